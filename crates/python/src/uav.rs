@@ -146,7 +146,8 @@ fn results<'py>(
     let sigmas = estimates.iter().map(|it| it.sigma.map_or([f64::NAN; 4], <[f64; 4]>::from));
     let (count, outputs) = (estimates.len(), innovations.len());
     let all = (0..count).flat_map(|line| innovations.iter().map(move |output| output[line]));
-    let (mut doubts, mut warnings) = (Finding::doubts(findings), Vec::new());
+    let of_all = Finding::doubts(findings);
+    let (mut doubts, mut warnings) = (of_all, Vec::new());
     for (reason, sentence) in followed.doubted_lines() {
         doubts.add(reason);
         warnings.push(sentence);
@@ -161,7 +162,6 @@ fn results<'py>(
             "V is {airspeed} m/s where deviations from {steady} m/s are expected (absolute=True)"
         )
     }));
-    let least = Finding::doubts(findings).state();
     Ok(Results::new(py)
         .line("t", seconds.collect())?
         .table("state", states.collect::<Vec<[f64; 4]>>())?
@@ -172,7 +172,10 @@ fn results<'py>(
             [count, outputs],
         )?
         .line("rejected", rejected.iter().map(|count| i64::from(*count)).collect())?
-        .line("health", lines.iter().map(|health| code(health.state().max(least))).collect())?
+        .line(
+            "health",
+            lines.iter().map(|health| code(health.state().max(of_all.state()))).collect(),
+        )?
         .words("warnings", warnings)?
         .words("reasons", reasons(doubts))?
         .done())

@@ -1,7 +1,7 @@
 //! A receiver of satellite navigation: precise point positioning from files.
 //!
 //! A [`Recording`] is read with all that must be known for a position, [`follow`] makes a [`Followed`] of it. Positions are
-//! ECEF, m; times s since the midnight before the first epoch. A receiver that is switched on is followed [`Live`].
+//! ECEF, m; times s since the midnight before the first epoch. A receiver that is switched on is followed by [`Live`].
 
 mod accuracy;
 mod agreement;

@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use kestirim_gnss_files::{
-    Antenna, Biases, Carriers, EarthRotation, Error, Navigation, Observations, StationLoading,
-    System, Text,
+    Antenna, Biases, Carriers, Error, Navigation, Observations, StationLoading, System, Text,
 };
 use kestirim_gnss_ppp::{Correction, Corrections, GpsTime, OceanLoading, Receiver};
 use kestirim_health::{Health, Reason};
@@ -119,7 +118,7 @@ impl Recording {
         let near = observations.approximate_position;
         let read = |path| StationLoading::read(path, &observations.marker, near);
         let loading = paths.blq.map(read).transpose()?;
-        let rotation = paths.erp.map(EarthRotation::read).transpose()?;
+        let rotation = paths.erp.map(|path| shelf.rotation(path)).transpose()?;
         let Some(start) = observations.epochs.first().map(|epoch| epoch.time) else {
             let problem =
                 "expected observations of GPS, Galileo, GLONASS or BeiDou, found none".to_owned();

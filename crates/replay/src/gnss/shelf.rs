@@ -1,7 +1,7 @@
 //! Products that were read, for the recordings of other stations that need the same.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use kestirim_gnss_files::{Antennas, Biases, Clocks, EarthRotation, Error, Navigation, Orbits};
@@ -16,6 +16,7 @@ pub struct Shelf {
     navigation: Kept<Navigation>,
     biases: Kept<Biases>,
     antennas: Kept<Antennas>,
+    rotation: Kept<EarthRotation>,
 }
 
 /// The paths, and the receiver's antenna where that matters.
@@ -72,7 +73,7 @@ impl Shelf {
         }
         self.biases(paths.bias)?;
         self.antennas(paths.antex, "")?;
-        paths.erp.map(EarthRotation::read).transpose().map(drop)
+        paths.erp.map(|path| self.rotation(path)).transpose().map(drop)
     }
 
     pub(super) fn orbits(&self, paths: &[PathBuf]) -> Result<Arc<Orbits>, Error> {
@@ -89,6 +90,10 @@ impl Shelf {
 
     pub(super) fn biases(&self, paths: &[PathBuf]) -> Result<Arc<Biases>, Error> {
         self.biases.get(paths, "", || Biases::read(paths))
+    }
+
+    pub(super) fn rotation(&self, path: &Path) -> Result<Arc<EarthRotation>, Error> {
+        self.rotation.get(&[path.to_path_buf()], "", || EarthRotation::read(path))
     }
 
     pub(super) fn antennas(
