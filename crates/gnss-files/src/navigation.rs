@@ -72,6 +72,13 @@ impl Navigation {
         Ok(navigation)
     }
 
+    pub(crate) fn of_stream(text: &Text, stream: Stream) -> Self {
+        let (mut navigation, mut file) = (Self::default(), Vec::new());
+        navigation.take(text, stream, &mut file);
+        navigation.put(&[file]);
+        navigation
+    }
+
     /// What a stream held: ephemerides with the numbers of their satellites, in any order.
     pub fn of(ephemerides: impl IntoIterator<Item = (u8, Ephemeris)>) -> Self {
         let mut navigation = Self::default();
@@ -83,6 +90,11 @@ impl Navigation {
     /// know.
     pub fn satellite(&self, number: u8, message: Message) -> &[Ephemeris] {
         self.messages[message as usize].of(number)
+    }
+
+    /// Whether there are no ephemerides.
+    pub fn is_empty(&self) -> bool {
+        self.satellites().next().is_none()
     }
 
     /// The numbers of the satellites in the files, each once.

@@ -53,14 +53,18 @@ impl Observations {
     /// As [`Self::read`].
     pub fn parse_unbiased(text: &Text, biases: &Biases) -> Result<Self, Error> {
         if let Some(stream) = Stream::of(text)? {
-            let mut body = Body::default();
-            body.take(text, stream)?;
-            return Ok(body.finish(text, biases));
+            return Self::of_stream(text, stream, biases);
         }
         let mut lines = text.lines();
         let header = Header::parse(text, &mut lines)?;
         let mut body = Body::new(header);
         body.read(text, &mut lines)?;
+        Ok(body.finish(text, biases))
+    }
+
+    pub(crate) fn of_stream(text: &Text, stream: Stream, biases: &Biases) -> Result<Self, Error> {
+        let mut body = Body::default();
+        body.take(text, stream)?;
         Ok(body.finish(text, biases))
     }
 }

@@ -19,6 +19,7 @@ pub(crate) mod tests;
 mod ubx;
 
 use std::collections::BTreeMap;
+use std::mem::take;
 
 pub(crate) use self::frames::{is_rtcm, is_ubx};
 use crate::error::{Error, Warning};
@@ -67,6 +68,17 @@ impl Stream {
             #[cfg(feature = "rtcm")]
             Some(Kind::Rtcm) => rtcm::read(text).map(Some),
             _ => Ok(None),
+        }
+    }
+
+    /// Takes what the satellites broadcast out of what was observed of them.
+    pub(crate) fn take_broadcast(&mut self) -> Self {
+        Self {
+            ephemerides: take(&mut self.ephemerides),
+            ionosphere: self.ionosphere.take(),
+            skipped: take(&mut self.skipped),
+            unread: take(&mut self.unread),
+            ..Self::default()
         }
     }
 }

@@ -244,7 +244,8 @@ fn expected<T: Scalar, const D: usize>(
 /// Each anchor keeps [`Config::bias_sigma`]. Where a tag stands, so does what is around it and between it and an anchor: what
 /// this adds is constant then, about as much again (an office's links beside its anchors' biases), and what has been learnt
 /// of an anchor's ranges beyond their noise is no noise; ranges of which nothing has been learnt yet count as poor. On the way
-/// all this changes, and averages.
+/// all this changes, and averages, but for what was learnt beyond [`Config::range_sigma`]: what stands in the way, and how a tag moves
+/// otherwise than it is supposed to, makes errors that stay for many ranges.
 fn bias_sigma<'a, T: Scalar, const D: usize>(
     place: &Place<T, D>,
     config: &Config<T>,
@@ -257,9 +258,11 @@ fn bias_sigma<'a, T: Scalar, const D: usize>(
     let slow = T::from_f64(CHANGING_SPEED * CHANGING_SPEED);
     let stands = slow / (slow + place.speed_squared);
     let least = config.learning.map_or(T::MAX, |learning| learning.limited(T::ZERO));
+    let usual = least.max(config.range_sigma * config.range_sigma);
     let variance = |link: &Link<T>| {
         let learnt = (link.noise.variance() - least).max(T::ZERO);
-        own + stands * (own + learnt)
+        let unusual = (link.noise.variance() - usual).max(T::ZERO);
+        own + (stands * (own + learnt)).max(unusual)
     };
     // Beside the best link, so that fixed point has room; less than a thousandth of its weight would look as if it did not
     // determine what a poor link alone tells.

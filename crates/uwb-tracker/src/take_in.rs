@@ -59,14 +59,10 @@ pub(crate) fn take_in<T: Scalar, const N: usize>(
         }
     };
     link.gate = gate;
-    let most = config.range_sigma * config.range_sigma;
-    let before = link.noise;
-    if is_redundant
-        && (!is_still || before.variance() <= most)
-        && let Some(learning) = &config.learning
-    {
+    if is_redundant && let Some(learning) = &config.learning {
+        let before = link.noise;
         link.noise.learn_square(learning, &weighed, square);
-        if is_still && link.noise.variance() > most {
+        if is_still && link.noise.variance() > config.range_sigma * config.range_sigma {
             link.noise = before;
         }
     }

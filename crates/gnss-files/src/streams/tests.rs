@@ -7,7 +7,7 @@ mod ubx;
 
 use crate::error::Error;
 use crate::samples::{navigation_3, text};
-use crate::{Ephemeris, Kind, Message, Navigation, Observations};
+use crate::{Biases, Ephemeris, Kind, Message, Navigation, Observations, Received};
 
 /// A stream of each format.
 pub(crate) fn streams() -> Vec<Vec<u8>> {
@@ -30,6 +30,20 @@ fn broadcast() -> Result<[(u8, Ephemeris); 2], Error> {
     let navigation = Navigation::parse(&[text(navigation_3())])?;
     let of = |number, message| (number, navigation.satellite(number, message)[0]);
     Ok([of(1, Message::Lnav), of(101, Message::Fnav)])
+}
+
+#[test]
+fn a_stream_that_is_read_once_has_what_each_of_two_readings_finds() -> Result<(), Error> {
+    for stream in streams() {
+        let stream = text(stream);
+        let received = Received::parse(&stream, &Biases::default())?;
+        assert_eq!(received.observations, Observations::parse(&stream)?);
+        assert!(!received.navigation.is_empty());
+        assert_eq!(received.navigation, Navigation::parse(&[stream])?);
+    }
+    let complaint = Received::parse(&text(navigation_3()), &Biases::default()).expect_err("a file");
+    assert!(complaint.to_string().contains("expected the stream of a receiver"), "{complaint}");
+    Ok(())
 }
 
 /// Whether two are the same but for the digits that a file has.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use kestirim_gnss_files::{
-    Antenna, Biases, Carriers, Error, Navigation, Observations, StationLoading, System, Text,
+    Antenna, Biases, Carriers, Error, Observations, Received, StationLoading, System, Text,
 };
 use kestirim_gnss_ppp::{Correction, Corrections, GpsTime, OceanLoading, Receiver};
 use kestirim_health::{Health, Reason};
@@ -99,11 +99,15 @@ impl Recording {
     pub fn of_stream(bytes: Vec<u8>, paths: &Paths<'_>, shelf: &Shelf) -> Result<Self, Error> {
         let biases = shelf.biases(paths.bias)?;
         let text = Text::unpack(paths.obs, bytes)?;
-        let observations = Observations::parse_unbiased(&text, &biases)?;
-        let satellites = if paths.sp3.is_empty() && paths.nav.is_empty() {
-            Told::Broadcast(Arc::new(Navigation::parse(&[text])?))
-        } else {
+        let Received { observations, navigation } = Received::parse(&text, &biases)?;
+        let satellites = if !paths.sp3.is_empty() || !paths.nav.is_empty() {
             Told::read(paths, shelf)?
+        } else if navigation.is_empty() {
+            let problem = "expected ephemerides of GPS, Galileo or BeiDou, or products, found none"
+                .to_owned();
+            return Err(Error::File { path: paths.obs.to_path_buf(), problem });
+        } else {
+            Told::Broadcast(Arc::new(navigation))
         };
         Self::of(paths, shelf, (observations, satellites), biases)
     }

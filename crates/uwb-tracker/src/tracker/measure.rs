@@ -18,7 +18,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         range: T,
         [observes_bias, redundant]: [bool; 2],
     ) -> Result<Report<T>, Error> {
-        let known = Known { is_redundant: redundant, is_still: self.is_still(self.time_us) };
+        let known = Known { is_redundant: redundant, is_still: self.stands };
         let link = self.links.get_mut(sample.anchor).ok_or(Error::NoSuchAnchor)?;
         let Place::Known(estimate) = &mut self.place else {
             return Ok(self.collect(sample, range));

@@ -41,6 +41,8 @@ pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     wheels: Option<OdometrySample<T>>,
     /// Time until which standstills are not taken in, µs.
     doubted_until_us: u64,
+    /// Whether IMU or wheels say that it stands at the estimate's time.
+    stands: bool,
     pub(crate) heard: u8,
     pub(crate) pace: Pace,
     /// The tag may be behind it as well.
@@ -107,6 +109,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             stillness: Stillness::new(),
             wheels: None,
             doubted_until_us: 0,
+            stands: false,
             heard: 0,
             pace: Pace::new(anchors.len()),
             mirror: None,

@@ -8,9 +8,9 @@ use crate::{Error, OdometrySample, motion};
 use kestirim_kalman::Gaussian;
 use kestirim_scalar::Scalar;
 
-/// Estimate, its time, anchors heard, end of a doubt, and what the tag may be behind.
+/// Estimate, its time, anchors heard, end of a doubt, whether it stands, and what the tag may be behind.
 pub(crate) type Timed<T, const D: usize, const N: usize> =
-    (Option<Gaussian<T, N>>, u64, u8, u64, Option<Mirror<D>>);
+    (Option<Gaussian<T, N>>, u64, u8, (u64, bool), Option<Mirror<D>>);
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
     /// Age beyond which odometry is not used (µs).
@@ -29,13 +29,15 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     /// Fields that [`Tracker::advance`] changes.
     #[inline]
     pub(crate) fn timed(&self) -> Timed<T, D, N> {
-        (self.estimate().copied(), self.time_us, self.heard, self.doubted_until_us, self.mirror)
+        let standing = (self.doubted_until_us, self.stands);
+        (self.estimate().copied(), self.time_us, self.heard, standing, self.mirror)
     }
 
     #[inline]
     pub(crate) fn restore(&mut self, before: Timed<T, D, N>) {
-        let estimate;
-        (estimate, self.time_us, self.heard, self.doubted_until_us, self.mirror) = before;
+        let (estimate, standing);
+        (estimate, self.time_us, self.heard, standing, self.mirror) = before;
+        (self.doubted_until_us, self.stands) = standing;
         if let Some(estimate) = estimate {
             self.place = Place::Known(estimate);
         }
@@ -55,15 +57,11 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             self.doubt_standing();
         }
         if let Some(mut estimate) = self.estimate().copied() {
-            let agrees = self.is_calm(time_us) && Standstill::agrees::<T, D, N>(&estimate);
-            let is_doubted = time_us < self.doubted_until_us;
-            if is_doubted
-                && self.stillness.is_still(time_us)
-                && Standstill::is_refuted::<T, D, N>(&estimate)
-            {
-                self.doubted_until_us = time_us.saturating_add(Self::CALM_US);
+            if time_us < self.doubted_until_us {
+                self.go_on_doubting(time_us, &estimate);
             }
-            let still = agrees && !is_doubted;
+            self.stands = self.is_still(time_us);
+            let still = self.stands && Standstill::agrees::<T, D, N>(&estimate);
             let interval = T::from_micro(elapsed.min(LOST_US) as i32);
             motion::advance(&mut estimate, &self.config, interval, still, push)?;
             if still {
@@ -120,6 +118,14 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         let wheels_stand =
             |wheels: &OdometrySample<T>| wheels.speed == T::ZERO && wheels.turn_rate == T::ZERO;
         self.stillness.is_still(time_us) || self.fresh_wheels(time_us).is_some_and(wheels_stand)
+    }
+
+    /// A doubt goes on where the IMU shows none of the motion that ranges surely show.
+    #[inline(never)] // Rare.
+    fn go_on_doubting(&mut self, time_us: u64, estimate: &Gaussian<T, N>) {
+        if self.stillness.is_still(time_us) && Standstill::is_refuted::<T, D, N>(estimate) {
+            self.doubted_until_us = time_us.saturating_add(Self::CALM_US);
+        }
     }
 
     /// Ranges that fit so badly on average while the tag is said to stand have one that moves: a trolley on a

@@ -19,8 +19,10 @@ const STREAM: &str = "stream";
 
 /// What is said of a position after which epochs have no solution.
 const STALE: &str = "no solution since then";
-/// On a line that never pauses, what has come is looked at so often.
+/// On a line that never pauses, what has come is looked at so often, …
 const EVERY: Duration = Duration::from_secs(1);
+/// … and so many times more seldom than a look takes.
+const SELDOM: u32 = 4;
 
 /// How positions are made, and of which products.
 #[derive(Debug, Clone)]
@@ -67,7 +69,13 @@ impl Plan for Receiving {
         let Setup { systems, method, corrections, .. } = self.setup;
         let pass = Pass { systems, method, ..Pass::default() };
         let live = Live::new(self.setup.config(self.setup.main()), pass, corrections);
-        Ok(Box::new(Receiver { live, plan: self.clone(), origin: None, looked: Instant::now() }))
+        Ok(Box::new(Receiver {
+            live,
+            plan: self.clone(),
+            origin: None,
+            looked: Instant::now(),
+            took: Duration::ZERO,
+        }))
     }
 }
 
@@ -78,15 +86,23 @@ struct Receiver {
     plan: Receiving,
     /// The first position, ECEF, m: the map's middle.
     origin: Option<Vector3<f64>>,
-    /// When what had come was looked at last.
+    /// When what had come was looked at last, …
     looked: Instant,
+    /// … and how long that took.
+    took: Duration,
 }
 
 impl Receiver {
     fn look(&mut self, is_end: bool) {
+        let begun = Instant::now();
         self.live.look(&self.plan.paths(), &self.plan.shelf, is_end);
         self.origin = self.origin.or(self.live.now().map(|now| now.fix.position));
-        self.looked = Instant::now();
+        (self.looked, self.took) = (Instant::now(), begun.elapsed());
+    }
+
+    /// Whether the last look was so long ago, and looks leave most of the time to others.
+    fn is_due(&self, every: Duration) -> bool {
+        self.looked.elapsed() >= every.max(self.took * SELDOM)
     }
 }
 
@@ -97,7 +113,7 @@ impl Online for Receiver {
     }
 
     fn hear(&mut self, bytes: &[u8]) {
-        if self.live.hear(bytes) || self.looked.elapsed() >= EVERY {
+        if self.live.hear(bytes) || self.is_due(EVERY) {
             self.look(false);
         }
     }
@@ -107,7 +123,9 @@ impl Online for Receiver {
     }
 
     fn settle(&mut self) {
-        self.look(false);
+        if self.is_due(Duration::ZERO) {
+            self.look(false);
+        }
     }
 
     fn finish(&mut self) -> Result<(), Error> {
