@@ -6,6 +6,7 @@ mod clock_jump;
 mod collected;
 mod config;
 mod consistency;
+mod displacement;
 mod error;
 mod estimator;
 mod filter;

@@ -79,6 +79,11 @@ impl Rest {
         }
     }
 
+    /// A receiver that is said to rest was seen to move.
+    pub(crate) fn displace(&mut self) {
+        self.leaping = u8::MAX;
+    }
+
     /// A receiver at rest is found somewhere, with a standard deviation that tells where it is.
     pub(crate) fn stay(&mut self, found: &Vector3<f64>, deviation: f64) {
         let better = self.place.is_none_or(|(_, known)| deviation < BETTER * known);

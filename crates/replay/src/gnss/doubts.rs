@@ -28,14 +28,20 @@ fn contradicted(followed: &Followed) -> Option<String> {
     let (count, of) = (followed.contradictions().count(), followed.fixes.len());
     let share = 100.0 * followed.rejected.sum() as f64 / followed.observations.max(1) as f64;
     let (why, therefore) = match contradiction {
-        Contradiction::Motion => ("the receiver is not where it was found before", "are"),
-        Contradiction::Residuals => ("the observations contradict the solution", "are"),
-        Contradiction::Rejections => {
-            ("more than a tenth of the observations is rejected", "may be")
+        Contradiction::Motion => (
+            "the receiver is not where it was found before",
+            "was it moved (--mode kinematic)? If not, positions and σ there are wrong",
+        ),
+        Contradiction::Residuals => {
+            ("the observations contradict the solution", "positions and σ there are wrong")
         }
+        Contradiction::Rejections => (
+            "more than a tenth of the observations is rejected",
+            "positions and σ there may be wrong",
+        ),
     };
     Some(format!(
-        "in {count} of {of} epochs from {first} s on {why} ({share:.0} % rejected): positions and σ there {therefore} wrong; \
+        "in {count} of {of} epochs from {first} s on {why} ({share:.0} % rejected): {therefore}; \
          check times, products, codes and antennas"
     ))
 }

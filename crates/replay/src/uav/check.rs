@@ -16,6 +16,8 @@ const AROUND: usize = 10;
 const STAYS: f64 = 0.7;
 /// Accelerations do step, with thrust and elevator.
 const ACCELERATIONS: [&str; 3] = ["ax", "ay", "az"];
+/// What is steered by such a part of all that it ever is may step.
+const STEERED: f64 = 0.05;
 /// So many samples in a row that stay the same to the last digit while others change are stuck.
 const STUCK: usize = 50;
 
@@ -84,6 +86,10 @@ fn step(name: &str, log: &Log, column: usize, limit: f64) -> Option<Finding> {
         return None;
     }
     let usual_us = 1.5e6 * log.interval_s;
+    let all = spans(&log.samples);
+    let is_steered = |around: &[Sample]| {
+        spans(around).iter().zip(all).any(|(&there, all)| all > 0.0 && there > STEERED * all)
+    };
     let found = log.samples.windows(2 * AROUND).find_map(|around| {
         let by = measured(&around[AROUND], column)? - measured(&around[AROUND - 1], column)?;
         if limit <= 0.0 || by.abs() <= limit {
@@ -100,7 +106,8 @@ fn step(name: &str, log: &Log, column: usize, limit: f64) -> Option<Finding> {
         let others = [before, after].into_iter().flat_map(|part| part.windows(2));
         let most = others.map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
         let stays = (median(after) - median(before)) / by >= STAYS;
-        (by.abs() > 2.0 * most && stays).then_some((around[AROUND].t_us, by))
+        let stands_out = by.abs() > 2.0 * most && stays && !is_steered(around);
+        stands_out.then_some((around[AROUND].t_us, by))
     });
     found.map(|(t_us, by)| {
         Finding::fault(
@@ -110,6 +117,17 @@ fn step(name: &str, log: &Log, column: usize, limit: f64) -> Option<Finding> {
             "no aircraft does: before or after it the sensor is off by as much",
             "look at the sensor, or leave its fields empty where it is wrong",
         )
+    })
+}
+
+/// By how much each input differs at most in these samples.
+fn spans(samples: &[Sample]) -> [f64; 2] {
+    std::array::from_fn(|input| {
+        let values = samples.iter().map(|sample| sample.input[input]);
+        let [least, most] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], it| {
+            [least.min(it), most.max(it)]
+        });
+        most - least
     })
 }
 

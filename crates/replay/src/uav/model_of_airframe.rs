@@ -20,11 +20,15 @@ const LASTING: f64 = 0.5;
 const PITCH: f64 = 1e-8;
 /// Light turbulence: deviations (m/s) and lengths (m) along and across. `replay` tries stronger and weaker.
 const GUST: Gusts = Gusts { sigma_u: 1.0, sigma_w: 1.0, length_u: 200.0, length_w: 50.0 };
-/// The trim is another one than computed, of ẋ.
-const AFFINE: Affine = Affine { sigma: [0.02, 0.5, 0.3, 0.0], rate: [1e-3, 1e-3, 0.02, 0.0] };
-/// Errors of a gyro, a pitch angle and an accelerometer.
-const BIASES: [(&str, [f64; 2]); 3] =
-    [("q", [0.02, 1e-5]), ("theta", [0.03, 1e-5]), ("az", [0.3, 0.01])];
+/// The trim is another one than computed, of ẋ; that of α̇ is of a lift that is wrong by a part.
+const AFFINE: Affine = Affine { sigma: [0.0, 0.5, 0.3, 0.0], rate: [1e-3, 1e-3, 0.02, 0.0] };
+/// Errors of a gyro and a pitch angle, and how an accelerometer's walks.
+const GYRO: [f64; 2] = [0.02, 1e-5];
+const PITCH_ANGLE: [f64; 2] = [0.03, 1e-5];
+const ACCELEROMETER_RATE: f64 = 0.01;
+/// Where it is mounted, a pitot tube measures such a part of the airspeed too much or too little, and this walks, m/s per √s.
+const POSITION_ERROR: f64 = 0.03;
+const POSITION_RATE: f64 = 1e-3;
 
 /// An aircraft that is known by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -63,7 +67,15 @@ impl ModelFile {
         let rows = names.iter().map(|name| row(name, &force, &trim.state.into()));
         let rows = rows.collect::<Result<Vec<_>, _>>()?;
         let is_there = |name: &str| names.iter().any(|other| other == name);
-        let biases = BIASES.into_iter().filter(|(of, _)| is_there(of));
+        // A lift that is wrong all the time shows in the trim, and beside an accelerometer's own error.
+        let lift = WRONG * airframe.gravity;
+        let biases = [
+            ("q", GYRO),
+            ("theta", PITCH_ANGLE),
+            ("az", [lift, ACCELEROMETER_RATE]),
+            ("V", [POSITION_ERROR * flight.airspeed, POSITION_RATE]),
+        ];
+        let biases = biases.into_iter().filter(|(of, _)| is_there(of));
         let biases = biases.map(|(of, [sigma, rate])| Bias { of: of.to_owned(), sigma, rate });
         let noise = self.noise.get_or_insert_default();
         if noise.process_matrix.is_none() {
@@ -72,7 +84,9 @@ impl ModelFile {
         }
         self.bias.get_or_insert_with(|| biases.collect());
         self.gust.get_or_insert(GUST);
-        self.affine.get_or_insert(AFFINE);
+        let mut affine = AFFINE;
+        affine.sigma[0] = lift / flight.airspeed;
+        self.affine.get_or_insert(affine);
         // Drag goes with the square of the airspeed, but thrust does not: ax is not in proportion.
         let scaled = || names.iter().filter(|name| *name == "az").cloned().collect();
         self.scaled.get_or_insert_with(scaled);
