@@ -320,9 +320,10 @@ impl Row<'_> {
         String::from_utf8_lossy(self.field(column))
     }
 
-    /// Whether there is nothing in a field.
+    /// Whether there is nothing in a field, or what programs write then: `nan`.
     pub fn is_empty(&self, column: Column) -> bool {
-        self.field(column).is_empty()
+        let field = self.field(column);
+        field.is_empty() || field.eq_ignore_ascii_case(b"nan")
     }
 
     fn field(&self, column: Column) -> &[u8] {

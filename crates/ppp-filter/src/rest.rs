@@ -46,6 +46,11 @@ impl Rest {
         self.elapsed = elapsed;
     }
 
+    /// Time since the last epoch, s.
+    pub(crate) fn elapsed(&self) -> f64 {
+        self.elapsed
+    }
+
     /// A receiver came from where it was predicted, with a standard deviation, to where it was found. One that `moves` is
     /// predicted where it was, and its first step may be any aircraft's.
     pub(crate) fn follow(

@@ -42,6 +42,11 @@ const RELINEARISATIONS: usize = 5;
 /// The model is one of the ground: what is found elsewhere is none, distances from the Earth's centre, m.
 pub(crate) const GROUND: core::ops::Range<f64> = 6.3e6..6.5e6;
 
+/// By so much at the most the direction to a satellite turns, rad/s.
+const SKY_TURNS: f64 = 1.5e-4;
+/// A receiver that was seen to move may be so many times as far away: what is known of it before pulls it back by little.
+const ANYWHERE: f64 = 5.0;
+
 /// Median of the squares of standard normal numbers.
 const MEDIAN_OF_SQUARES: f64 = 0.455;
 
@@ -217,16 +222,19 @@ impl<const N: usize> Running<N> {
     /// Lets a receiver that is said to rest be elsewhere, if the phases' changes show that it is: they keep their ambiguities, which
     /// tell where.
     fn follow_displacement(&mut self, lines: &Lines<'_, '_, N>) -> Result<(), Error> {
+        // While a place is not known, the sky that turns changes phases, too.
+        let turned = self.deviation() * SKY_TURNS * self.rest.elapsed();
         let change = |line: &Line| {
             let before = self.channels.get(line.state)?.as_ref()?.monitor.residual()?;
             let [_, now] = line.innovations(&self.estimate.mean, &Vector3::zeros());
-            let variance = 2.0 * (line.phase_variance * line.phase_noise + line.clock_variance);
+            let own = line.phase_variance * line.phase_noise + line.clock_variance;
+            let variance = 2.0 * own + turned * turned;
             Some(Change { sight: line.expected.sight, phase: now - before, variance })
         };
         let kept = lines.iter().map(|(_, line)| line).filter(|line| line.slipped.is_none());
         let changes: Vec<_, N> = collected(kept.filter_map(change));
         if let Some(step) = self.displacement.of(&changes) {
-            let variance = step.norm_squared();
+            let variance = ANYWHERE * ANYWHERE * step.norm_squared();
             for coordinate in 0..3 {
                 self.estimate.add_variance_at(coordinate, variance)?;
             }

@@ -49,8 +49,8 @@ pub struct Health<T> {
     /// Standard deviation of the position, root of its variances' sum, m: the filter's own, that of the anchors'
     /// constant errors, and that of being at the other place as likely as here; none without a position.
     pub position_sigma: Option<T>,
-    /// That of constant errors alone, m: what [`Config::bias_sigma`](crate::Config::bias_sigma), and more where the tag stands,
-    /// makes of the position through the anchors heard, and so does the common bias where these are too few to tell it; where
+    /// That of constant errors alone, m: what [`Config::bias_sigma`](crate::Config::bias_sigma), more where the tag stands, and what
+    /// was learnt beyond [`Config::range_sigma`](crate::Config::range_sigma) makes of the position through the anchors heard, and so does the common bias where these are too few to tell it; where
     /// they do not determine a position, through all that ever were.
     pub bias_sigma: T,
     /// Whether lately more than a third of the ranges were left out, but for those of blocked anchors.

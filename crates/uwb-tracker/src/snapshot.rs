@@ -8,9 +8,9 @@ use kestirim_snapshot::layout;
 
 layout! {
     [T: Scalar, const D: usize, const N: usize, const A: usize] for Tracker<T, D, N, A>
-        as "uwb/tracker", 4, T, [D, N, A];
+        as "uwb/tracker", 5, T, [D, N, A];
     [T: Scalar, const D: usize, const N: usize, const A: usize] for DifferenceTracker<T, D, N, A>
-        as "uwb/differences", 4, T, [D, N, A];
+        as "uwb/differences", 5, T, [D, N, A];
     [T: Scalar, const A: usize] for WheelTracker<T, A> as "uwb/wheels", 2, T, [A];
     [T: Scalar, const D: usize, const N: usize, const A: usize] for PublishedTracker<T, D, N, A>
         as "uwb/published", 1, T, [D, N, A];

@@ -5,7 +5,8 @@
 
 use host_sim::system::{AnySystem, Files, HealthState, Settings, Source, Wanted};
 use host_sim::systems::drone::Drone;
-use kestirim_replay::drone::{EnvironmentKind, Estimate, Misfit, Stop};
+use kestirim_replay::drone::{Doubt, EnvironmentKind, Estimate, Misfit, Quantity, Search, Stop};
+use kestirim_replay::metrics::{median, rms};
 use kestirim_tests::recordings::folder_of;
 use rand_core::SeedableRng;
 use rand_distr::{Bernoulli, Distribution, Normal};
@@ -59,6 +60,58 @@ fn none_of_a_thousand_flights_contradicts_its_own_environment() {
             assert_eq!(misfit, None, "{name}, {} measurements", stops.len());
         }
     }
+}
+
+/// The last estimate of a flight of which nothing but its path losses is known.
+fn found(stops: &[Stop], environment: EnvironmentKind) -> Estimate {
+    let search = Search::new(stops, None, &[], 1, false).expect("surroundings");
+    search.find(Some(environment), Quantity::PathLoss).pop().expect("a place")
+}
+
+/// The thesis' shadowing is a tenth of a decibel below the drone, and no radio's: a filter that believes it is sure of a wrong place.
+#[test]
+fn with_more_shadowing_than_the_environments_a_place_is_less_sure_and_not_wrong() {
+    for (round, (_, environment)) in ENVIRONMENTS.into_iter().take(2).enumerate() {
+        for more_db in [0.0, 2.0, 4.0] {
+            let mut random = Xoshiro256PlusPlus::seed_from_u64(round as u64);
+            let more = Normal::new(0.0, more_db).expect("a deviation");
+            let place = |_| {
+                let mut stops = flight(environment, 20, &mut random);
+                for stop in &mut stops {
+                    stop.loss += more.sample(&mut random);
+                }
+                let Estimate { place: [x, y], sd_m, .. } = found(&stops, environment);
+                [x.hypot(y), x.hypot(y) / sd_m]
+            };
+            let places: Vec<[f64; 2]> = (0..24).map(place).collect();
+            let [errors, ratios] =
+                [0, 1].map(|of| places.iter().map(|it| it[of]).collect::<Vec<_>>());
+            let largest = ratios.iter().copied().fold(0.0, f64::max);
+            println!(
+                "{environment:?}, {more_db} dB more: {:.0} m in the median, error over σ {:.2}, at most {largest:.1}",
+                median(&errors),
+                rms(&ratios)
+            );
+            assert!(rms(&ratios) < 1.5 && largest < 3.5, "{ratios:.1?}");
+        }
+    }
+}
+
+#[test]
+fn path_losses_of_a_weaker_transmitter_than_supposed_are_told() {
+    let told = |off_db: f64| {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(3);
+        let is_told = |_: &u8| {
+            let mut stops = flight(EnvironmentKind::Suburban, 20, &mut random);
+            stops.iter_mut().for_each(|stop| stop.loss += off_db);
+            let estimate = found(&stops, EnvironmentKind::Suburban);
+            Doubt::all(&stops, &estimate, None, None).any(|it| matches!(it, Doubt::Off(_)))
+        };
+        (0..8).filter(is_told).count()
+    };
+    let counts = [0.0, 10.0, -10.0].map(told);
+    println!("{counts:?} of 8 flights, path losses right, 10 dB larger and smaller");
+    assert!(counts[0] == 0 && counts[1] >= 6 && counts[2] >= 6, "{counts:?}");
 }
 
 #[test]

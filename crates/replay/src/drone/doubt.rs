@@ -2,6 +2,7 @@
 
 use kestirim_air_to_ground::Channel;
 
+use super::among_buildings::FAR_OFF_DB;
 use super::{Estimate, Misfit, Quantity, Stop, level_step};
 
 /// What speaks against a flight, or what it was taken for.
@@ -16,6 +17,8 @@ pub enum Doubt {
     },
     /// The user moves, and was taken for one who stays: the first and the last third of the flight place the user so far apart, m.
     Moved(f64),
+    /// All path losses are off by so much (dB) that the transmitter is another than supposed.
+    Off(f64),
     /// The environment does not explain the measurements.
     Misfit(Misfit),
 }
@@ -32,8 +35,12 @@ impl Doubt {
         let stops = stops.get(..=estimate.stop).unwrap_or(stops);
         let step = level_step(stops, estimate.place).map(|(t, by)| Self::Step { t, by });
         let misfit = channel.and_then(|it| Misfit::find(stops, estimate, it));
-        [step, moved_m.map(Self::Moved), misfit.map(Self::Misfit)].into_iter().flatten()
+        // What a transmitter sends that is not known may be anything.
+        let is_far = estimate.level_db.is_none() && estimate.off_db.abs() > FAR_OFF_DB;
+        let off = is_far.then_some(Self::Off(estimate.off_db));
+        [step, moved_m.map(Self::Moved), off, misfit.map(Self::Misfit)].into_iter().flatten()
     }
+
     /// In a sentence; the environment has a name.
     pub fn sentence(&self, environment: &str, quantity: Quantity) -> String {
         match self {
@@ -42,6 +49,10 @@ impl Doubt {
             ),
             Self::Moved(apart) => format!(
                 "the first and the last third of the flight place the user {apart:.0} m apart: one who moves needs --window"
+            ),
+            Self::Off(by) => format!(
+                "all path losses are {by:+.0} dB off, as far as is thought possible: the transmitter is weaker or stronger than supposed, or the antennas are; \
+                 levels (rssi_db) suppose nothing"
             ),
             Self::Misfit(misfit) => misfit.sentence(environment, quantity),
         }

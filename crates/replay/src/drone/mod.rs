@@ -3,6 +3,7 @@
 //! A [`Search`] makes an [`Estimate`] of each [`Stop`] at which the drone measured. Places are metres in the plane, heights
 //! metres above the user.
 
+mod among_buildings;
 mod check;
 mod cloud;
 mod density;

@@ -1,12 +1,9 @@
 //! Where a user is looked for: over open ground, or through the thesis' channel.
 
-use kestirim_air_to_ground::{Channel, LevelPrior, Measurement};
+use kestirim_air_to_ground::{LevelPrior, Measurement};
 use kestirim_particle_filter::Region;
-use kestirim_user_locator::{Locator, Within};
 
-use super::{
-    Area, Cloud, EnvironmentKind, Error, Estimate, MOST_CORNERS, Quantity, Stop, WAVELENGTH_M,
-};
+use super::{Area, EnvironmentKind, Error, Estimate, Quantity, Stop, WAVELENGTH_M};
 
 /// Points of a lattice.
 pub const POINTS: usize = 2000;
@@ -14,19 +11,8 @@ pub const POINTS: usize = 2000;
 pub const MOST: usize = 400;
 /// How far beyond the flight the user may be if no area is given, m.
 pub const BEYOND_M: f64 = 500.0;
-/// Levels of the transmitter that are thought possible about the nominal one, dB.
-const LEVELS_DB: f64 = 100.0;
-/// How many levels stand for all.
-const LEVELS: u32 = 41;
 /// How well a path loss is calibrated, dB.
-const CALIBRATION_DB: f64 = 3.0;
-/// Path losses that are off by no more than so many of these are thought possible.
-const LIKELY: f64 = 2.0;
-
-/// The thesis' channel to users within an area.
-type ChannelWithin<'a> = Within<'a, f64, Channel<f64>, MOST_CORNERS>;
-/// A user in the plane, and by how many dB all path losses are off.
-type UserLocator<'a> = Locator<f64, POINTS, MOST, 3, ChannelWithin<'a>>;
+pub(super) const CALIBRATION_DB: f64 = 3.0;
 
 /// As many measurements as can be remembered, evenly chosen; over open ground, where they are thinned by place, all.
 pub fn thinned(stops: &[Stop], environment: Option<EnvironmentKind>) -> Vec<Stop> {
@@ -134,87 +120,6 @@ impl<'a> Search<'a> {
     pub(super) fn measurement(&self, stop: &Stop) -> Option<Measurement<f64>> {
         Measurement::new(self.inward(stop.place), stop.height, stop.loss).ok()
     }
-
-    /// Through the thesis' channel.
-    fn among_buildings(&self, environment: EnvironmentKind, quantity: Quantity) -> Vec<Estimate> {
-        let Ok(channel) = environment.channel_at(self.wavelength_m) else { return Vec::new() };
-        let channel = Within::new(channel, &*self.area);
-        let region = self.area.region();
-        let within = match quantity {
-            Quantity::PathLoss => LIKELY * CALIBRATION_DB,
-            Quantity::Level => LEVELS_DB,
-        };
-        let [width, height] = *region.high();
-        let corners = ([0.0, 0.0, -within], [width, height, within]);
-        let Ok(region) = Region::new(corners.0, corners.1) else { return Vec::new() };
-        self.follow(quantity, Locator::new(channel, &region))
-    }
-
-    /// Whether the 90 % region of places holds the true one. The level, the third coordinate, is integrated over: nobody
-    /// knows the true one.
-    fn covered(&self, locator: &UserLocator<'_>, truth: [f64; 2]) -> Option<bool> {
-        let truth = self.inward(truth);
-        let moments = locator.moments();
-        let (level, deviation) = (moments.mean()[2], moments.deviation()[2]);
-        let levels = (0..LEVELS)
-            .map(|k| level + deviation * (8.0 * f64::from(k) / f64::from(LEVELS - 1) - 4.0));
-        let density = |[x, y]: [f64; 2]| {
-            log_sum(levels.clone().map(|level| locator.log_posterior(&[x, y, level])))
-        };
-        let posterior = locator.posterior();
-        let mut points: Vec<(f64, f64)> = (0..posterior.len())
-            .filter_map(|index| {
-                Some((posterior.point(index)?, posterior.log_weights().get(index)?))
-            })
-            .filter(|(_, log_weight)| **log_weight > -12.0)
-            .map(|(state, log_weight)| (density([state[0], state[1]]), log_weight.exp()))
-            .collect();
-        points.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let all: f64 = points.iter().map(|(_, weight)| weight).sum();
-        let mut sum = 0.0;
-        let border = points.iter().find(|(_, weight)| {
-            sum += weight;
-            sum >= 0.9 * all
-        });
-        border.map(|(least, _)| density(truth) >= *least)
-    }
-
-    fn follow(&self, quantity: Quantity, locator: UserLocator<'_>) -> Vec<Estimate> {
-        let mut locator = Box::new(locator);
-        let mut estimates = Vec::new();
-        for (number, stop) in self.stops.iter().enumerate() {
-            let Some(measurement) = self.measurement(stop) else { continue };
-            if locator.measure(&measurement).is_err() {
-                continue;
-            }
-            let moments = locator.moments();
-            let (mean, deviation) = (moments.mean(), moments.deviation());
-            let last = number + 1 == self.stops.len();
-            let truth = self.truth.get(number).filter(|_| last);
-            let covered = truth.and_then(|truth| self.covered(&locator, *truth));
-            estimates.push(Estimate {
-                stop: number,
-                place: self.outward([mean[0], mean[1]]),
-                sd_m: deviation[0].hypot(deviation[1]),
-                // A level received is the negative loss: the more the transmitter sends, the less.
-                level_db: (quantity == Quantity::Level).then_some(-mean[2]),
-                off_db: mean[2],
-                covered,
-                next: None,
-                cloud: self
-                    .with_clouds
-                    .then(|| Cloud::of_lattice(locator.posterior()).moved(self.origin)),
-            });
-        }
-        estimates
-    }
-}
-
-/// Adds up exponentials of logarithms, as a logarithm.
-fn log_sum(logs: impl Iterator<Item = f64>) -> f64 {
-    let logs: Vec<f64> = logs.collect();
-    let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    largest + logs.iter().map(|log| (log - largest).exp()).sum::<f64>().ln()
 }
 
 /// The box around a flight, and some more: its lower corner, and the area as seen from there.

@@ -29,8 +29,8 @@ fn contradicted(followed: &Followed) -> Option<String> {
     let share = 100.0 * followed.rejected.sum() as f64 / followed.observations.max(1) as f64;
     let (why, therefore) = match contradiction {
         Contradiction::Motion => (
-            "the receiver is not where it was found before",
-            "was it moved (--mode kinematic)? If not, positions and σ there are wrong",
+            "the receiver is not where it was before",
+            "if moved, --mode kinematic; if not, positions are wrong",
         ),
         Contradiction::Residuals => {
             ("the observations contradict the solution", "positions and σ there are wrong")

@@ -16,7 +16,8 @@ const AROUND: usize = 10;
 const STAYS: f64 = 0.7;
 /// Accelerations do step, with thrust and elevator.
 const ACCELERATIONS: [&str; 3] = ["ax", "ay", "az"];
-/// What is steered by such a part of all that it ever is may step.
+/// So does a pitch rate of few samples a second, while an input goes by such a part of all that it ever does.
+const RATE: &str = "q";
 const STEERED: f64 = 0.05;
 /// So many samples in a row that stay the same to the last digit while others change are stuck.
 const STUCK: usize = 50;
@@ -106,7 +107,7 @@ fn step(name: &str, log: &Log, column: usize, limit: f64) -> Option<Finding> {
         let others = [before, after].into_iter().flat_map(|part| part.windows(2));
         let most = others.map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
         let stays = (median(after) - median(before)) / by >= STAYS;
-        let stands_out = by.abs() > 2.0 * most && stays && !is_steered(around);
+        let stands_out = by.abs() > 2.0 * most && stays && !(name == RATE && is_steered(around));
         stands_out.then_some((around[AROUND].t_us, by))
     });
     found.map(|(t_us, by)| {
@@ -161,6 +162,26 @@ mod tests {
         };
         let log = Log::new(vec![2], (0..200).map(sample).collect()).expect("a log");
         check(&log, None).iter().any(|finding| finding.about == "steps")
+    }
+
+    #[test]
+    fn a_pitch_rate_may_step_while_the_elevator_does_and_an_airspeed_may_not() {
+        let told = |output: usize, elevator: f64| {
+            let sample = |k: usize| {
+                let stepped = if k >= 100 { 1.0 } else { 0.0 };
+                let swing = 0.001 * (0.05 * k as f64).sin();
+                let elevator = elevator * stepped + if k == 20 { 0.1 } else { 0.0 };
+                Sample {
+                    t_us: 20_000 * k as i64,
+                    input: [elevator, 0.0],
+                    measured: vec![Some(swing + stepped)],
+                }
+            };
+            let log = Log::new(vec![output], (0..200).map(sample).collect()).expect("a log");
+            check(&log, None).iter().any(|finding| finding.about == "steps")
+        };
+        assert!(told(1, 0.0) && !told(1, 0.05));
+        assert!(told(2, 0.0) && told(2, 0.05));
     }
 
     #[test]

@@ -124,10 +124,8 @@ impl Followed {
             let count = self.healths.iter().filter(|health| health.has(reason)).count();
             let share = 100.0 * count as f64 / self.healths.len() as f64;
             let first = self.estimates.get(place)?.t_us as f64 / 1e6;
-            Some((
-                reason,
-                format!("{sentence}; first at {first:.2} s, in {share:.0} % of the lines"),
-            ))
+            let share = if share < 1.0 { "less than 1".to_owned() } else { format!("{share:.0}") };
+            Some((reason, format!("{sentence}; first at {first:.2} s, in {share} % of the lines")))
         })
     }
 }

@@ -4,8 +4,10 @@ use super::Error;
 
 /// Intervals that differ by less than this share from the usual one are jitter: autopilots log when they have time.
 const JITTER: f64 = 0.4;
-/// Share of intervals that must be the usual one.
+/// Share of intervals that must be the usual one, or where samples were lost up to so many of it, to this part of one.
 const REGULAR: f64 = 0.75;
+const MOST_LOST: f64 = 10.0;
+const NEAR: f64 = 0.15;
 /// From this many usual intervals on, samples are missing.
 const GAP: f64 = 1.5;
 
@@ -46,7 +48,13 @@ impl Log {
         }
         steps.sort_by(f64::total_cmp);
         let usual = *steps.get(steps.len() / 2).ok_or(Error::TooShort)?;
-        let near = steps.iter().filter(|step| (*step / usual - 1.0).abs() <= JITTER).count();
+        let is_near = |step: &&f64| {
+            let times = *step / usual;
+            let off = (times - times.round()).abs();
+            (times - 1.0).abs() <= JITTER
+                || (off <= NEAR && (2.0..=MOST_LOST).contains(&times.round()))
+        };
+        let near = steps.iter().filter(is_near).count();
         let of = steps.len();
         if (near as f64) < REGULAR * of as f64 {
             return Err(Error::Irregular { near, of, usual });
@@ -80,5 +88,8 @@ mod tests {
             assert!((log.interval_s - 0.02).abs() < 1e-9 && log.gaps == 0, "{log:?}");
         }
         assert!(matches!(log([0.4, 1.0, 1.6]), Err(Error::Irregular { .. })));
+        // Every third or fourth sample was lost.
+        let lost = log([1.0, 1.0, 2.0]).unwrap();
+        assert!((lost.interval_s - 0.02).abs() < 1e-9 && lost.gaps == 100, "{lost:?}");
     }
 }

@@ -101,6 +101,9 @@ pub struct ModelFile {
     pub(super) gust: Option<Gusts>,
     wind: Option<Drifting>,
     density: Option<Drifting>,
+    /// Of a grid, all models of which have the same biases: that of the middle one, m/s.
+    #[serde(skip)]
+    pub(super) usual_airspeed: Option<f64>,
     pub(super) affine: Option<Affine>,
     pub(super) scaled: Option<Vec<String>>,
 }

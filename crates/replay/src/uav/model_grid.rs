@@ -63,6 +63,7 @@ impl ModelFile {
         let models = airspeeds.iter().map(|&airspeed| {
             let mut file = self.clone();
             file.airspeed = Some(Airspeeds::One(airspeed));
+            file.usual_airspeed = airspeeds.get(airspeeds.len() / 2).copied();
             file.one(true).map_err(|error| match error {
                 ModelFileError::Airframe(why) => {
                     ModelFileError::Airframe(format!("at {airspeed} m/s {why}"))

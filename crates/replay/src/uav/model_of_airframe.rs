@@ -69,11 +69,12 @@ impl ModelFile {
         let is_there = |name: &str| names.iter().any(|other| other == name);
         // A lift that is wrong all the time shows in the trim, and beside an accelerometer's own error.
         let lift = WRONG * airframe.gravity;
+        let airspeed = self.usual_airspeed.unwrap_or(flight.airspeed);
         let biases = [
             ("q", GYRO),
             ("theta", PITCH_ANGLE),
             ("az", [lift, ACCELEROMETER_RATE]),
-            ("V", [POSITION_ERROR * flight.airspeed, POSITION_RATE]),
+            ("V", [POSITION_ERROR * airspeed, POSITION_RATE]),
         ];
         let biases = biases.into_iter().filter(|(of, _)| is_there(of));
         let biases = biases.map(|(of, [sigma, rate])| Bias { of: of.to_owned(), sigma, rate });
@@ -85,7 +86,7 @@ impl ModelFile {
         self.bias.get_or_insert_with(|| biases.collect());
         self.gust.get_or_insert(GUST);
         let mut affine = AFFINE;
-        affine.sigma[0] = lift / flight.airspeed;
+        affine.sigma[0] = lift / airspeed;
         self.affine.get_or_insert(affine);
         // Drag goes with the square of the airspeed, but thrust does not: ax is not in proportion.
         let scaled = || names.iter().filter(|name| *name == "az").cloned().collect();

@@ -1,36 +1,29 @@
-//! From bytes to the estimators and the state.
+//! From bytes of telemetry to the estimators and the state.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use kestirim_telemetry::{Counts, Frame, Origin, Receiver};
+use kestirim_telemetry::{Frame, Origin, Receiver};
 
 use super::device::Device;
+use super::hearing::{Hearing, Stream};
 use super::options::Following;
 use super::state::State;
 use crate::Error;
-use crate::system::{Answer, Online, Plan};
+use crate::system::{Answer, Plan};
 
 /// More devices are not followed: a sender may invent them.
 const MOST: usize = 4096;
 
-/// Makes messages of bytes, and tells how many. Each device that says who it is has an estimator of its own, and so have
-/// together those that do not say it.
+/// Makes of bytes what there is to see.
 #[derive(Debug)]
 pub(super) struct Decoder {
-    receiver: Receiver,
-    /// What hears the bytes themselves, of a stream that is no telemetry.
-    hearer: Option<Box<dyn Online>>,
-    devices: BTreeMap<Sender, Device>,
-    plans: Plans,
-    /// Which is shown in detail; the first that is heard, if nobody says it.
-    shown: Option<Sender>,
+    hearing: Box<dyn Hearing>,
     state: Arc<Mutex<State>>,
-    most: u32,
 }
 
 impl Decoder {
-    /// With fresh estimators. After the `most` frames no more is wanted.
+    /// With fresh estimators. After the `most` frames, or epochs, no more is wanted.
     pub(super) fn new(
         following: &Following,
         state: Arc<Mutex<State>>,
@@ -42,18 +35,12 @@ impl Decoder {
             let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
             state.show(estimator.as_ref());
         }
-        Ok(Self {
-            receiver: Receiver::new(),
-            hearer: estimator.filter(|_| following.hears_bytes()),
-            devices: BTreeMap::new(),
-            plans: Plans {
-                shown: following.plan.clone(),
-                others: following.plan_of_others().cloned(),
-            },
-            shown: following.device.map(Sender::Device),
-            state,
-            most: most.unwrap_or(u32::MAX),
-        })
+        let most = most.unwrap_or(u32::MAX);
+        let hearing: Box<dyn Hearing> = match estimator.filter(|_| following.hears_bytes()) {
+            Some(estimator) => Box::new(Stream::new(estimator, Arc::clone(&state), most)),
+            None => Box::new(Telemetry::new(following, Arc::clone(&state), most)),
+        };
+        Ok(Self { hearing, state })
     }
 
     /// What there is to see.
@@ -63,23 +50,42 @@ impl Decoder {
 
     /// Takes in what was read; whether more is wanted.
     pub(super) fn take(&mut self, bytes: &[u8]) -> Result<bool, Error> {
-        if let Some(hearer) = &mut self.hearer {
-            hearer.hear(bytes);
-            return Ok(self.show_heard(bytes.len()));
-        }
+        self.hearing.take(bytes)
+    }
+
+    /// Nothing more will come.
+    pub(super) fn finish(&mut self) -> Result<(), Error> {
+        self.hearing.finish()
+    }
+
+    /// Nothing comes for now.
+    pub(super) fn pause(&mut self) -> Result<(), Error> {
+        self.hearing.pause()
+    }
+}
+
+/// Makes messages of bytes, and tells how many. Each device that says who it is has an estimator of its own, and so have
+/// together those that do not say it.
+#[derive(Debug)]
+struct Telemetry {
+    receiver: Receiver,
+    devices: BTreeMap<Sender, Device>,
+    plans: Plans,
+    /// Which is shown in detail; the first that is heard, if nobody says it.
+    shown: Option<Sender>,
+    state: Arc<Mutex<State>>,
+    most: u32,
+}
+
+impl Hearing for Telemetry {
+    fn take(&mut self, bytes: &[u8]) -> Result<bool, Error> {
         let more = self.decode(bytes)?;
         self.settle();
         self.show(bytes.len());
         Ok(more)
     }
 
-    /// Nothing more will come.
-    pub(super) fn finish(&mut self) -> Result<(), Error> {
-        if let Some(hearer) = &mut self.hearer {
-            let finished = hearer.finish();
-            self.show_heard(0);
-            return finished;
-        }
+    fn finish(&mut self) -> Result<(), Error> {
         // A frame that only lacks its end is whole; any other piece of one is torn.
         self.decode(&[0])?;
         self.each(Device::finish)?;
@@ -92,28 +98,25 @@ impl Decoder {
         finished
     }
 
-    /// Nothing comes for now.
-    pub(super) fn pause(&mut self) -> Result<(), Error> {
-        if let Some(hearer) = &mut self.hearer {
-            hearer.settle();
-            self.show_heard(0);
-            return Ok(());
-        }
+    fn pause(&mut self) -> Result<(), Error> {
         self.each(Device::pause)?;
         self.settle();
         self.show(0);
         Ok(())
     }
+}
 
-    /// Shows what the bytes themselves came to; whether more is wanted.
-    fn show_heard(&self, bytes: usize) -> bool {
-        let Some(hearer) = &self.hearer else { return true };
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        let [received, taken] = hearer.heard();
-        state.count(bytes, Counts { received, ..Counts::default() }, 0);
-        state.counts.taken = taken.into();
-        state.show(hearer.as_ref());
-        received < self.most
+impl Telemetry {
+    fn new(following: &Following, state: Arc<Mutex<State>>, most: u32) -> Self {
+        let (shown, others) = (following.plan.clone(), following.plan_of_others().cloned());
+        Self {
+            receiver: Receiver::new(),
+            devices: BTreeMap::new(),
+            plans: Plans { shown, others },
+            shown: following.device.map(Sender::Device),
+            state,
+            most,
+        }
     }
 
     fn each(

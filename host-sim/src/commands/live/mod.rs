@@ -14,6 +14,7 @@ mod device;
 mod devices;
 mod feed;
 mod follower;
+mod hearing;
 mod listener;
 pub mod options;
 mod order;

@@ -99,11 +99,6 @@ impl Receiver {
         self.origin = self.origin.or(self.live.now().map(|now| now.fix.position));
         (self.looked, self.took) = (Instant::now(), begun.elapsed());
     }
-
-    /// Whether the last look was so long ago, and looks leave most of the time to others.
-    fn is_due(&self, every: Duration) -> bool {
-        self.looked.elapsed() >= every.max(self.took * SELDOM)
-    }
 }
 
 impl Online for Receiver {
@@ -113,7 +108,9 @@ impl Online for Receiver {
     }
 
     fn hear(&mut self, bytes: &[u8]) {
-        if self.live.hear(bytes) || self.is_due(EVERY) {
+        // Looks leave most of the time to others.
+        let is_due = self.looked.elapsed() >= EVERY.max(self.took * SELDOM);
+        if self.live.hear(bytes) || is_due {
             self.look(false);
         }
     }
@@ -123,9 +120,7 @@ impl Online for Receiver {
     }
 
     fn settle(&mut self) {
-        if self.is_due(Duration::ZERO) {
-            self.look(false);
-        }
+        self.look(false);
     }
 
     fn finish(&mut self) -> Result<(), Error> {

@@ -1,0 +1,206 @@
+//! Through the thesis' channel, with as much more shadowing as the measurements show.
+
+use kestirim_air_to_ground::{Channel, Measurement};
+use kestirim_particle_filter::Region;
+use kestirim_user_locator::{Locator, Within};
+use rayon::prelude::*;
+
+use super::search::CALIBRATION_DB;
+use super::{Cloud, EnvironmentKind, Estimate, MOST, MOST_CORNERS, POINTS, Quantity, Search};
+
+/// Levels of the transmitter that are thought possible about the nominal one, dB.
+const LEVELS_DB: f64 = 100.0;
+/// How many levels stand for all.
+const LEVELS: u32 = 41;
+/// Path losses that are off by no more than so many calibrations are thought possible.
+const LIKELY: f64 = 2.0;
+/// Least deviations of a measurement that are as likely as the thesis' own (a tenth of a decibel below the drone, which no
+/// radio measures), dB.
+const LEAST_SIGMAS_DB: [f64; 3] = [1.0, 2.0, 4.0];
+
+/// Of a deviation that counts for less, and of points that weigh so much less than the heaviest (as a logarithm), no region knows.
+const LEAST_SHARE: f64 = 0.01;
+const LIGHT: f64 = -12.0;
+/// Path losses that are all off by so much are at the end of what is thought possible, dB.
+pub(super) const FAR_OFF_DB: f64 = 0.8 * LIKELY * CALIBRATION_DB;
+
+/// The thesis' channel to users within an area.
+type ChannelWithin<'a> = Within<'a, f64, Channel<f64>, MOST_CORNERS>;
+/// A user in the plane, and by how many dB all path losses are off.
+type UserLocator<'a> = Locator<f64, POINTS, MOST, 3, ChannelWithin<'a>>;
+
+/// A user who is looked for with one deviation of the measurements.
+#[derive(Debug)]
+struct Hypothesis<'a> {
+    locator: Box<UserLocator<'a>>,
+    /// Logarithm of the density of all that was measured, without a constant.
+    evidence: f64,
+    /// Whether no place explains what was measured.
+    is_refuted: bool,
+}
+
+/// What all of them believe.
+struct Believed<'h, 'a> {
+    hypotheses: &'h [Hypothesis<'a>],
+    /// What each of them counts for; the sum is 1.
+    shares: Vec<f64>,
+}
+
+impl Search<'_> {
+    /// Through the thesis' channel.
+    pub(super) fn among_buildings(
+        &self,
+        environment: EnvironmentKind,
+        quantity: Quantity,
+    ) -> Vec<Estimate> {
+        let Ok(channel) = environment.channel_at(self.wavelength_m) else { return Vec::new() };
+        let noisier =
+            LEAST_SIGMAS_DB.iter().filter_map(|sigma| channel.with_least_sigma(*sigma).ok());
+        let region = self.area.region();
+        let within = match quantity {
+            Quantity::PathLoss => LIKELY * CALIBRATION_DB,
+            Quantity::Level => LEVELS_DB,
+        };
+        let [width, height] = *region.high();
+        let corners = ([0.0, 0.0, -within], [width, height, within]);
+        let Ok(region) = Region::new(corners.0, corners.1) else { return Vec::new() };
+        let hypothesis = |channel| Hypothesis {
+            locator: Box::new(Locator::new(Within::new(channel, &*self.area), &region)),
+            evidence: 0.0,
+            is_refuted: false,
+        };
+        self.follow(quantity, std::iter::once(channel).chain(noisier).map(hypothesis).collect())
+    }
+
+    fn follow(&self, quantity: Quantity, mut hypotheses: Vec<Hypothesis<'_>>) -> Vec<Estimate> {
+        let mut estimates = Vec::new();
+        for (number, stop) in self.stops.iter().enumerate() {
+            let Some(measurement) = self.measurement(stop) else { continue };
+            let taken: Vec<bool> =
+                hypotheses.par_iter_mut().map(|it| it.measure(&measurement)).collect();
+            // What none of them explains is left out.
+            if !taken.contains(&true) {
+                continue;
+            }
+            for (hypothesis, is_taken) in hypotheses.iter_mut().zip(taken) {
+                hypothesis.is_refuted |= !is_taken;
+            }
+            hypotheses.retain(|it| !it.is_refuted);
+            let believed = Believed::of(&hypotheses);
+            let ([x, y, off_db], [along, across, _]) = believed.moments();
+            let last = number + 1 == self.stops.len();
+            let truth = self.truth.get(number).filter(|_| last);
+            let cloud = || {
+                let cloud = Cloud::of_lattice(believed.heaviest()?.locator.posterior());
+                Some(cloud.moved(self.origin))
+            };
+            estimates.push(Estimate {
+                stop: number,
+                place: self.outward([x, y]),
+                sd_m: along.hypot(across),
+                // A level received is the negative loss: the more the transmitter sends, the less.
+                level_db: (quantity == Quantity::Level).then_some(-off_db),
+                off_db,
+                covered: truth.and_then(|truth| believed.covers(self.inward(*truth))),
+                next: None,
+                cloud: self.with_clouds.then(cloud).flatten(),
+            });
+        }
+        estimates
+    }
+}
+
+impl Hypothesis<'_> {
+    /// Takes in a measurement; whether some place explains it.
+    fn measure(&mut self, measurement: &Measurement<f64>) -> bool {
+        let is_taken = self.locator.measure(measurement).is_ok();
+        if is_taken {
+            self.weigh();
+        }
+        is_taken
+    }
+
+    /// The mean of the likelihood over all places: where the lattice is not, it is nothing.
+    fn weigh(&mut self) {
+        let posterior = self.locator.posterior();
+        let volume: f64 = posterior.region().width().iter().product();
+        let part = volume / posterior.len() as f64;
+        let Some(state) = posterior.point(posterior.heaviest()) else { return };
+        let heaviest = self.locator.log_posterior(&state);
+        let beside = log_sum(posterior.log_weights().iter().copied());
+        self.evidence = heaviest + beside + part.ln();
+    }
+}
+
+impl<'h, 'a> Believed<'h, 'a> {
+    fn of(hypotheses: &'h [Hypothesis<'a>]) -> Self {
+        let all = log_sum(hypotheses.iter().map(|it| it.evidence));
+        let shares = hypotheses.iter().map(|it| (it.evidence - all).exp()).collect();
+        Self { hypotheses, shares }
+    }
+
+    fn heaviest(&self) -> Option<&'h Hypothesis<'a>> {
+        self.hypotheses.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))
+    }
+
+    /// Mean and deviations of the place and of the level.
+    fn moments(&self) -> ([f64; 3], [f64; 3]) {
+        let all: Vec<_> = self.hypotheses.iter().map(|it| it.locator.moments()).collect();
+        let sum = |of: &dyn Fn(usize) -> f64| -> f64 {
+            self.shares.iter().enumerate().map(|(index, share)| share * of(index)).sum()
+        };
+        let mean = [0, 1, 2].map(|axis| sum(&|index| all[index].mean()[axis]));
+        let deviation = [0, 1, 2].map(|axis| {
+            let square = |index: usize| {
+                all[index].deviation()[axis].hypot(all[index].mean()[axis] - mean[axis])
+            };
+            sum(&|index| square(index).powi(2)).sqrt()
+        });
+        (mean, deviation)
+    }
+
+    /// Whether the 90 % region of places holds the true one. The level, the third coordinate, is integrated over: nobody
+    /// knows the true one.
+    fn covers(&self, truth: [f64; 2]) -> Option<bool> {
+        let ([.., level], [.., deviation]) = self.moments();
+        let levels = (0..LEVELS)
+            .map(|k| level + deviation * (8.0 * f64::from(k) / f64::from(LEVELS - 1) - 4.0));
+        let counting =
+            self.hypotheses.iter().zip(&self.shares).filter(|(_, it)| **it > LEAST_SHARE);
+        let counting: Vec<_> = counting.collect();
+        let density = |[x, y]: [f64; 2]| {
+            let at = |level: f64| {
+                counting.iter().map(move |(it, _)| it.locator.log_posterior(&[x, y, level]))
+            };
+            log_sum(levels.clone().flat_map(at))
+        };
+        let mut places = Vec::new();
+        for (hypothesis, share) in &counting {
+            let posterior = hypothesis.locator.posterior();
+            let all = log_sum(posterior.log_weights().iter().copied());
+            let states = (0..posterior.len())
+                .filter_map(|index| posterior.point(index).zip(posterior.log_weights().get(index)));
+            let heavy = states.filter(|(_, log_weight)| **log_weight > LIGHT);
+            // As many of all of them as of one.
+            let some = heavy.step_by(counting.len());
+            places.extend(some.map(|([x, y, _], log)| ([x, y], *share * (log - all).exp())));
+        }
+        let mut points: Vec<(f64, f64)> =
+            places.par_iter().map(|(place, weight)| (density(*place), *weight)).collect();
+        points.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let all: f64 = points.iter().map(|(_, weight)| weight).sum();
+        let mut sum = 0.0;
+        let border = points.iter().find(|(_, weight)| {
+            sum += weight;
+            sum >= 0.9 * all
+        });
+        border.map(|(least, _)| density(truth) >= *least)
+    }
+}
+
+/// Adds up exponentials of logarithms, as a logarithm.
+fn log_sum(logs: impl Iterator<Item = f64>) -> f64 {
+    let logs: Vec<f64> = logs.collect();
+    let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    largest + logs.iter().map(|log| (log - largest).exp()).sum::<f64>().ln()
+}
