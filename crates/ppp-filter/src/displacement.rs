@@ -9,7 +9,7 @@ const UNKNOWN: [f64; 4] = [1e4; 4];
 /// Fewer satellites do not show whether their changes agree.
 const FEWEST: usize = 6;
 /// A receiver has moved that is farther from where it was than so many standard deviations, by the noise that the changes show
-/// themselves: on four clean days of three stations none is farther than 6.6.
+/// themselves: four clean days of three stations stay below 7 of those.
 const FARTHEST: f64 = 10.0;
 /// The same by the changes of all satellites but any two.
 const STILL_FAR: f64 = 5.0;
@@ -94,7 +94,7 @@ struct Motion {
 }
 
 impl Motion {
-    /// Of all changes but two; none of too few.
+    /// Of all changes, or all but two; none of too few.
     #[inline(never)] // Wanted at two places, once in flash.
     fn of(changes: &[Change], left_out: Option<[usize; 2]>) -> Option<Self> {
         let used = || {
