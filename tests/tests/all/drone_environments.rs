@@ -103,7 +103,9 @@ fn path_losses_of_a_weaker_transmitter_than_supposed_are_told() {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(3);
         let is_told = |_: &u8| {
             let mut stops = flight(EnvironmentKind::Suburban, 20, &mut random);
-            stops.iter_mut().for_each(|stop| stop.loss += off_db);
+            for stop in &mut stops {
+                stop.loss += off_db;
+            }
             let estimate = found(&stops, EnvironmentKind::Suburban);
             Doubt::all(&stops, &estimate, None, None).any(|it| matches!(it, Doubt::Off(_)))
         };
