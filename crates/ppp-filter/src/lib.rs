@@ -6,7 +6,6 @@ mod clock_jump;
 mod collected;
 mod config;
 mod consistency;
-mod displacement;
 mod error;
 mod estimator;
 mod filter;

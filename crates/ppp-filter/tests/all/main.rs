@@ -2,7 +2,6 @@
 
 mod filter;
 mod lean;
-mod moved;
 mod single_point;
 mod sky;
 mod systems;
