@@ -35,8 +35,6 @@ struct Hypothesis<'a> {
     locator: Box<UserLocator<'a>>,
     /// Logarithm of the density of all that was measured, without a constant.
     evidence: f64,
-    /// Whether no place explains what was measured.
-    is_refuted: bool,
 }
 
 /// What all of them believe.
@@ -67,7 +65,6 @@ impl Search<'_> {
         let hypothesis = |channel| Hypothesis {
             locator: Box::new(Locator::new(Within::new(channel, &*self.area), &region)),
             evidence: 0.0,
-            is_refuted: false,
         };
         self.follow(quantity, std::iter::once(channel).chain(noisier).map(hypothesis).collect())
     }
@@ -82,10 +79,8 @@ impl Search<'_> {
             if !taken.contains(&true) {
                 continue;
             }
-            for (hypothesis, is_taken) in hypotheses.iter_mut().zip(taken) {
-                hypothesis.is_refuted |= !is_taken;
-            }
-            hypotheses.retain(|it| !it.is_refuted);
+            let mut taken = taken.into_iter();
+            hypotheses.retain(|_| taken.next() == Some(true));
             let believed = Believed::of(&hypotheses);
             let ([x, y, off_db], [along, across, _]) = believed.moments();
             let last = number + 1 == self.stops.len();
