@@ -65,10 +65,13 @@ impl Pattern<'_> {
     /// lengthens it: what RTKLIB's `antmodel` calls `dant` and subtracts from the observations. The antenna
     /// stands level and looks north.
     pub fn receiver_range(&self, direction: Direction) -> f64 {
-        let (sine, cosine) = libm::sincos(direction.elevation);
-        let (sine_azimuth, cosine_azimuth) = libm::sincos(direction.azimuth);
+        self.receiver_range_along(direction, &direction.local())
+    }
+
+    /// The same where the unit vector to the east, north and up is known.
+    pub(crate) fn receiver_range_along(&self, direction: Direction, local: &Vector3<f64>) -> f64 {
         let [north, east, up] = self.offset;
-        let nearer = cosine * (cosine_azimuth * north + sine_azimuth * east) + sine * up;
+        let nearer = local.dot(&Vector3::new(east, north, up));
         let zenith = core::f64::consts::FRAC_PI_2 - direction.elevation;
         self.variation(zenith, Some(direction.azimuth)) - nearer
     }

@@ -3,6 +3,7 @@ use nalgebra::Vector3;
 use crate::GpsTime;
 use crate::astronomy::Arguments;
 use crate::constants::ASTRONOMICAL_UNIT;
+use crate::trigonometry::{Turn, cos, sin};
 
 /// Positions of the Sun and the Moon relative to the Earth's centre, ECEF, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,33 +90,34 @@ impl Bodies {
 /// Longitude (rad) and distance (m) of the Sun: an ellipse (Meeus 1998, chapter 25).
 fn sun(arguments: &Arguments) -> (f64, f64) {
     let Arguments { centuries: t, sun_anomaly, .. } = *arguments;
-    let centre = (1.914_602 - 0.004_817 * t) * libm::sin(sun_anomaly)
-        + (0.019_993 - 0.000_101 * t) * libm::sin(2.0 * sun_anomaly)
-        + 0.000_289 * libm::sin(3.0 * sun_anomaly);
+    let centre = (1.914_602 - 0.004_817 * t) * sin(sun_anomaly)
+        + (0.019_993 - 0.000_101 * t) * sin(2.0 * sun_anomaly)
+        + 0.000_289 * sin(3.0 * sun_anomaly);
     let centre = centre.to_radians();
     let eccentricity = 0.016_708_634 - 0.000_042_037 * t;
     let distance = 1.000_001_018 * (1.0 - eccentricity * eccentricity)
-        / (1.0 + eccentricity * libm::cos(sun_anomaly + centre));
+        / (1.0 + eccentricity * cos(sun_anomaly + centre));
     (arguments.sun_longitude() + centre, distance * ASTRONOMICAL_UNIT)
 }
 
 /// Longitude and latitude (rad) and distance (m) of the Moon.
 fn moon(arguments: &Arguments) -> (f64, f64, f64) {
-    let angle = |[elongation, sun, moon, node]: [i8; 4]| {
-        f64::from(elongation) * arguments.elongation
-            + f64::from(sun) * arguments.sun_anomaly
-            + f64::from(moon) * arguments.moon_anomaly
-            + f64::from(node) * arguments.node_distance
-    };
+    let angles = [
+        arguments.elongation,
+        arguments.sun_anomaly,
+        arguments.moon_anomaly,
+        arguments.node_distance,
+    ]
+    .map(Turn::of);
     let mut longitude = 0.0;
     let mut distance = 385_000_560.0;
     for (multiples, along, away) in LONGITUDE_AND_DISTANCE {
-        let (sine, cosine) = libm::sincos(angle(multiples));
-        longitude += along * sine;
-        distance += away * cosine;
+        let turn = Turn::sum(&multiples, &angles);
+        longitude += along * turn.sine;
+        distance += away * turn.cosine;
     }
-    let latitude: f64 =
-        LATITUDE.iter().map(|(multiples, north)| north * libm::sin(angle(*multiples))).sum();
+    let north = |(multiples, north): &([i8; 4], f64)| north * Turn::sum(multiples, &angles).sine;
+    let latitude: f64 = LATITUDE.iter().map(north).sum();
     let radians = |millionths: f64| (millionths * 1e-6).to_radians();
     (arguments.moon_longitude() + radians(longitude), radians(latitude), distance)
 }

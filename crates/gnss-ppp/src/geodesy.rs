@@ -88,12 +88,24 @@ pub struct Direction {
 impl Direction {
     /// The direction of the unit vector `sight` (ECEF, receiver to satellite) at `place`.
     pub fn of(sight: &Vector3<f64>, place: &Geodetic) -> Self {
-        let [east, north, up] = *(place.enu_from_ecef() * sight).as_array();
+        Self::of_local(&(place.enu_from_ecef() * sight))
+    }
+
+    /// The direction of a unit vector to the east, north and up.
+    pub(crate) fn of_local(local: &Vector3<f64>) -> Self {
+        let [east, north, up] = *local.as_array();
         let azimuth = libm::atan2(east, north);
         Self {
-            elevation: libm::asin(up.clamp(-1.0, 1.0)),
+            elevation: libm::atan2(up, libm::sqrt(east * east + north * north)),
             azimuth: if azimuth < 0.0 { azimuth + core::f64::consts::TAU } else { azimuth },
         }
+    }
+
+    /// The unit vector to the east, north and up.
+    pub fn local(self) -> Vector3<f64> {
+        let (up, level) = libm::sincos(self.elevation);
+        let (east, north) = libm::sincos(self.azimuth);
+        Vector3::new(level * east, level * north, up)
     }
 }
 

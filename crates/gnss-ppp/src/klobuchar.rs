@@ -3,6 +3,7 @@
 use core::f64::consts::{PI, TAU};
 
 use crate::constants::SPEED_OF_LIGHT;
+use crate::trigonometry::cos;
 use crate::{Direction, Geodetic, GpsTime};
 
 /// Delay at night, s.
@@ -32,8 +33,8 @@ impl Klobuchar {
         let away = 0.0137 / (elevation + 0.11) - 0.022;
         let (sine, cosine) = libm::sincos(direction.azimuth);
         let latitude = (place.latitude / PI + away * cosine).clamp(-0.416, 0.416);
-        let longitude = place.longitude / PI + away * sine / libm::cos(latitude * PI);
-        let geomagnetic = latitude + 0.064 * libm::cos((longitude - 1.617) * PI);
+        let longitude = place.longitude / PI + away * sine / cos(latitude * PI);
+        let geomagnetic = latitude + 0.064 * cos((longitude - 1.617) * PI);
         let local = 43_200.0 * longitude + time.second();
         let local = local - libm::floor(local / 86_400.0) * 86_400.0;
         let slant = libm::pow(0.53 - elevation, 3.0) * 16.0 + 1.0;

@@ -21,6 +21,7 @@ mod site;
 mod slip;
 mod solid_tide;
 mod time;
+mod trigonometry;
 mod troposphere;
 mod wind_up;
 
@@ -43,5 +44,5 @@ pub use site::{Receiver, Site};
 pub use slip::{Arc, Slip, SlipLimits};
 pub use solid_tide::solid_tide;
 pub use time::GpsTime;
-pub use troposphere::{Mapping, Troposphere, zenith_hydrostatic, zenith_wet};
+pub use troposphere::{Mapping, Troposphere, gradient_mapping, zenith_hydrostatic, zenith_wet};
 pub use wind_up::wind_up;

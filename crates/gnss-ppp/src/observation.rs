@@ -41,7 +41,9 @@ pub struct Expected {
     pub wind_up_cycles: f64,
     /// ECEF unit vector from the receiver to the satellite: minus ∂range/∂position.
     pub sight: Vector3<f64>,
-    /// The same as azimuth and elevation at the receiver.
+    /// The same to the east, north and up of the receiver: the last is the sine of the elevation.
+    pub local: Vector3<f64>,
+    /// The same as azimuth and elevation there.
     pub direction: Direction,
     /// ∂P/∂Z, Niell's mapping of the wet delay.
     pub wet_mapping: f64,
@@ -62,8 +64,9 @@ impl Site<'_> {
         let line = state.position - self.antenna;
         let distance = line.norm();
         let sight = line / distance;
-        let direction = Direction::of(&sight, &self.place);
-        let mapping = self.troposphere.mapping(direction.elevation);
+        let local = self.enu_from_ecef * sight;
+        let direction = Direction::of_local(&local);
+        let mapping = self.troposphere.mapping_of_sine(local.z);
         let mut clock = state.clock;
         if has(Correction::Relativity) {
             clock += eccentricity_clock(&state.position, &state.velocity);
@@ -94,8 +97,8 @@ impl Site<'_> {
             && has(Correction::ReceiverAntenna)
         {
             range += carriers.ionosphere_free([
-                first.receiver_range(direction),
-                second.receiver_range(direction),
+                first.receiver_range_along(direction, &local),
+                second.receiver_range_along(direction, &local),
             ]);
         }
         let wind_up_cycles = match &axes {
@@ -109,6 +112,7 @@ impl Site<'_> {
             wind_up: carriers.narrow_lane() * wind_up_cycles,
             wind_up_cycles,
             sight,
+            local,
             direction,
             wet_mapping: mapping.wet,
         };

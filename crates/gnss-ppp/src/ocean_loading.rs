@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use crate::GpsTime;
 use crate::astronomy::Arguments;
+use crate::trigonometry::cos;
 
 /// Multiples of solar time, s, h and p of the waves and a phase in quarter turns, by the convention of
 /// Schwiderski to which BLQ files refer (IERS Conventions 2010, section 7.1.2).
@@ -41,21 +42,14 @@ impl OceanLoading {
     /// left out: a tenth of the displacement, a millimetre or two on the worst coasts.
     pub fn displacement(&self, time: GpsTime, ut1_minus_gps: f64) -> Vector3<f64> {
         let angles = angles(&Arguments::at(time, ut1_minus_gps));
-        let component = |amplitude: &[f64; 11], lag: &[f64; 11]| -> f64 {
-            amplitude
-                .iter()
-                .zip(lag)
-                .zip(angles)
-                .map(|((amplitude, lag), angle)| amplitude * libm::cos(angle - lag.to_radians()))
-                .sum()
-        };
-        let [up, west, south] = &self.amplitude;
-        let [up_lag, west_lag, south_lag] = &self.lag;
-        Vector3::new(
-            -component(west, west_lag),
-            -component(south, south_lag),
-            component(up, up_lag),
-        )
+        let mut moved = [0.0; 3];
+        for ((moved, amplitudes), lags) in moved.iter_mut().zip(&self.amplitude).zip(&self.lag) {
+            for ((amplitude, lag), angle) in amplitudes.iter().zip(lags).zip(angles) {
+                *moved += amplitude * cos(angle - lag.to_radians());
+            }
+        }
+        let [up, west, south] = moved;
+        Vector3::new(-west, -south, up)
     }
 }
 

@@ -2,6 +2,7 @@ use nalgebra::Vector3;
 
 use crate::GpsTime;
 use crate::solid_tide::Station;
+use crate::trigonometry::Turn;
 
 /// Days of a year.
 const YEAR: f64 = 365.25;
@@ -20,8 +21,8 @@ pub fn pole_tide(position: &Vector3<f64>, pole: [f64; 2], time: GpsTime) -> Vect
     let [x, y] = pole.map(|angle| angle.to_degrees() * 3600.0);
     let [secular_x, secular_y] = SECULAR.map(|[mean, rate]| (mean + rate * years) / 1000.0);
     let (m1, m2) = (x - secular_x, secular_y - y);
-    let Station { sine: sine_of_latitude, cosine: cosine_of_latitude, longitude, .. } = station;
-    let (sine, cosine) = libm::sincos(longitude);
+    let Station { sine: sine_of_latitude, cosine: cosine_of_latitude, .. } = station;
+    let Turn { sine, cosine } = station.longitude;
     let along = m1 * cosine + m2 * sine;
     let across = m1 * sine - m2 * cosine;
     // (7.26), m for seconds of arc, by the latitude in place of the colatitude.

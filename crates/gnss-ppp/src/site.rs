@@ -33,7 +33,6 @@ pub struct Site<'a> {
     pub(crate) receiver: Receiver<'a>,
     pub(crate) bodies: Bodies,
     pub(crate) enu_from_ecef: Matrix3<f64>,
-    pub(crate) place: Geodetic,
     /// Position of the antenna's reference point, with the tides, ECEF, m.
     pub(crate) antenna: Vector3<f64>,
     pub(crate) troposphere: Troposphere,
@@ -65,7 +64,6 @@ impl<'a> Site<'a> {
             receiver: *receiver,
             bodies,
             enu_from_ecef,
-            place,
             antenna,
             troposphere: Troposphere::over(&place, time),
         }

@@ -2,6 +2,7 @@ use nalgebra::Vector3;
 
 use crate::astronomy::Arguments;
 use crate::constants::{EARTH_RADIUS, MOON_TO_EARTH_MASS, SUN_TO_EARTH_MASS};
+use crate::trigonometry::Turn;
 use crate::{Bodies, GpsTime};
 
 /// Displacement by the diurnal tides beyond the nominal Love numbers, mm (IERS Conventions 2010, table 7.3a):
@@ -61,18 +62,22 @@ pub(crate) struct Station {
     outward: Vector3<f64>,
     pub(crate) sine: f64,
     pub(crate) cosine: f64,
-    pub(crate) longitude: f64,
+    pub(crate) longitude: Turn,
 }
 
 impl Station {
     pub(crate) fn at(position: &Vector3<f64>) -> Option<Self> {
         let up = position.try_normalize(f64::MIN_POSITIVE)?;
-        let longitude = libm::atan2(up.y, up.x);
-        let (sine, cosine) = libm::sincos(longitude);
-        let outward = Vector3::new(cosine, sine, 0.0);
-        let east = Vector3::new(-sine, cosine, 0.0);
-        let north = up.cross(&east);
         let (sine, cosine) = (up.z, libm::hypot(up.x, up.y));
+        // At a pole any meridian is as good.
+        let longitude = if cosine > 0.0 {
+            Turn { sine: up.y / cosine, cosine: up.x / cosine }
+        } else {
+            Turn::NONE
+        };
+        let outward = Vector3::new(longitude.cosine, longitude.sine, 0.0);
+        let east = Vector3::new(-longitude.sine, longitude.cosine, 0.0);
+        let north = up.cross(&east);
         Some(Self { up, north, east, outward, sine, cosine, longitude })
     }
 
@@ -129,16 +134,17 @@ impl Station {
     /// Corrections in the frequency domain (7.12 and 7.13).
     fn step_2(&self, arguments: &Arguments) -> Vector3<f64> {
         let Self { sine, cosine, .. } = *self;
+        let (waves, longitude) = (doodson(arguments), self.longitude);
         let mut total = [0.0; 3];
         for (multiples, [radial, radial_out, transverse, transverse_out]) in DIURNAL {
-            let (s, c) = libm::sincos(angle(multiples, arguments) + self.longitude);
+            let Turn { sine: s, cosine: c } = Turn::sum(&multiples, &waves).plus(longitude);
             let [up, north, east] = &mut total;
             *up += 2.0 * sine * cosine * (radial * s + radial_out * c);
             *north += (cosine * cosine - sine * sine) * (transverse * s + transverse_out * c);
             *east += sine * (transverse * c - transverse_out * s);
         }
         for (multiples, [radial, radial_out, transverse, transverse_out]) in LONG_PERIOD {
-            let (s, c) = libm::sincos(angle(multiples, arguments));
+            let Turn { sine: s, cosine: c } = Turn::sum(&multiples, &waves);
             let [up, north, _] = &mut total;
             *up += (1.5 * sine * sine - 0.5) * (radial * c + radial_out * s);
             *north += 2.0 * sine * cosine * (transverse * c + transverse_out * s);
@@ -148,14 +154,13 @@ impl Station {
     }
 }
 
-/// Doodson's argument with these multiples; N′ is minus the longitude of the Moon's node.
-fn angle([tau, s, h, p, n, p1]: [i8; 6], arguments: &Arguments) -> f64 {
-    f64::from(tau) * arguments.lunar_time()
-        + f64::from(s) * arguments.moon_longitude()
-        + f64::from(h) * arguments.sun_longitude()
-        + f64::from(p) * arguments.perigee()
-        - f64::from(n) * arguments.node
-        + f64::from(p1) * arguments.sun_perigee()
+/// Doodson's arguments, of which the waves' are sums of multiples; N′ is minus the longitude of the Moon's node.
+fn doodson(arguments: &Arguments) -> [Turn; 6] {
+    let moon_and_sun =
+        [arguments.lunar_time(), arguments.moon_longitude(), arguments.sun_longitude()];
+    let [tau, s, h] = moon_and_sun.map(Turn::of);
+    let [p, n, p1] = [arguments.perigee(), -arguments.node, arguments.sun_perigee()].map(Turn::of);
+    [tau, s, h, p, n, p1]
 }
 
 #[cfg(test)]

@@ -1,6 +1,9 @@
 use core::f64::consts::TAU;
 
-use crate::{Direction, Geodetic, GpsTime};
+use crate::trigonometry::{cos, sin};
+use crate::{Geodetic, GpsTime};
+use kestirim_scalar::Components;
+use nalgebra::Vector3;
 
 /// Coefficients a, b, c of a mapping function.
 type Coefficients = [f64; 3];
@@ -61,7 +64,7 @@ impl Troposphere {
         // the south. Against the day of the calendar's year that is a day at most: some 10 µm at 5°.
         let season = (time.days_since_j2000(0.0) - 26.5) / 365.25
             + if place.latitude < 0.0 { 0.5 } else { 0.0 };
-        let winter = libm::cos(TAU * season);
+        let winter = cos(TAU * season);
         let latitude = libm::fabs(place.latitude);
         let mean = at_latitude(&HYDROSTATIC_MEAN, latitude);
         let amplitude = at_latitude(&HYDROSTATIC_AMPLITUDE, latitude);
@@ -82,9 +85,13 @@ impl Troposphere {
 
     /// The mapping to an elevation (rad). Below one degree it stays as at one degree.
     pub fn mapping(&self, elevation: f64) -> Mapping {
+        self.mapping_of_sine(sin(elevation))
+    }
+
+    /// The same from the elevation's sine.
+    pub(crate) fn mapping_of_sine(&self, sine: f64) -> Mapping {
         // The sine of one degree.
         const LOWEST: f64 = 0.017_452_406_437_283_51;
-        let sine = libm::sin(elevation);
         let sine = if sine < LOWEST { LOWEST } else { sine };
         let height = (1.0 / sine - fraction(&HEIGHT, sine)) * self.height;
         Mapping {
@@ -107,7 +114,7 @@ impl Troposphere {
 pub fn zenith_hydrostatic(place: &Geodetic) -> f64 {
     let height = in_troposphere(place.height);
     let pressure = 1_013.25 * libm::pow(1.0 - 2.2557e-5 * height, 5.2568);
-    let gravity = 1.0 - 0.00266 * libm::cos(2.0 * place.latitude) - 0.28e-6 * height;
+    let gravity = 1.0 - 0.00266 * cos(2.0 * place.latitude) - 0.28e-6 * height;
     0.002_276_8 * pressure / gravity
 }
 
@@ -124,15 +131,12 @@ fn in_troposphere(height: f64) -> f64 {
     height.clamp(-1_000.0, 11_000.0)
 }
 
-impl Direction {
-    /// What a gradient of the troposphere to the north and one to the east, m, add to a range from here: ∂P/∂G, by Chen and
-    /// Herring (1997), with the 0.0032 of the total delay.
-    pub fn gradient_mapping(self) -> [f64; 2] {
-        let (sine, cosine) = libm::sincos(self.elevation);
-        let mapping = cosine / (sine * sine + 0.0032 * cosine);
-        let (east, north) = libm::sincos(self.azimuth);
-        [mapping * north, mapping * east]
-    }
+/// What a gradient of the troposphere to the north and one to the east, m, add to a range along a unit vector to the east, north
+/// and up: ∂P/∂G, by Chen and Herring (1997), with the 0.0032 of the total delay.
+pub fn gradient_mapping(local: &Vector3<f64>) -> [f64; 2] {
+    let [east, north, up] = *local.as_array();
+    let total = up * up + 0.0032 * libm::sqrt(east * east + north * north);
+    [north / total, east / total]
 }
 
 /// Linear between the latitudes of a table, constant beyond (rad, not negative).
@@ -157,7 +161,7 @@ fn fraction(coefficients: &Coefficients, sine: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Troposphere, zenith_hydrostatic, zenith_wet};
+    use super::{Troposphere, gradient_mapping, zenith_hydrostatic, zenith_wet};
     use crate::{Direction, Geodetic, GpsTime};
 
     fn place(latitude: f64, height: f64) -> Geodetic {
@@ -211,7 +215,7 @@ mod tests {
     fn gradients_add_to_low_satellites() {
         let mapped = |azimuth: f64, elevation: f64| {
             let [azimuth, elevation] = [azimuth, elevation].map(f64::to_radians);
-            Direction { elevation, azimuth }.gradient_mapping()
+            gradient_mapping(&Direction { elevation, azimuth }.local())
         };
         for (azimuth, [north, east]) in
             [(0.0, [1.0, 0.0]), (90.0, [0.0, 1.0]), (180.0, [-1.0, 0.0]), (270.0, [0.0, -1.0])]

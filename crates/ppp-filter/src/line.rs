@@ -3,7 +3,7 @@
 use crate::collected::collected;
 use crate::states::{CLOCK, COMMON, GRADIENTS, WET};
 use crate::{Config, Motion, SatelliteObservation, Slipped};
-use kestirim_gnss_ppp::{Carriers, Constellation, Expected, Site};
+use kestirim_gnss_ppp::{Carriers, Constellation, Expected, Site, gradient_mapping};
 use kestirim_scalar::Components;
 use nalgebra::{SVector, Vector3};
 
@@ -62,7 +62,7 @@ impl Line {
         slipped: Option<Slipped>,
         config: &Config<impl Sized>,
     ) -> Self {
-        let sine = libm::sin(expected.direction.elevation);
+        let sine = expected.local.z;
         let clock = config.clock_variance(&observation.state);
         // Of orbit and clock: alike in both.
         let told = observation.state.accuracy * observation.state.accuracy;
@@ -104,7 +104,7 @@ impl Line {
             site.expect(&observation.state, carriers, observation.antenna.as_ref(), wind_up)
         {
             self.expected = expected;
-            self.gradients = self.gradients.map(|_| expected.direction.gradient_mapping());
+            self.gradients = self.gradients.map(|_| gradient_mapping(&expected.local));
             self.compare(observation);
         }
     }

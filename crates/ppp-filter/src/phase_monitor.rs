@@ -55,6 +55,11 @@ impl PhaseMonitor {
         self.rejected > 0
     }
 
+    /// Residual when it was last observed, m, if it was used then.
+    pub(crate) fn residual(&self) -> Option<f64> {
+        (self.rejected == 0).then_some(self.residual)
+    }
+
     /// The ambiguity begins anew.
     pub(crate) fn begin(&mut self) {
         *self = Self { noise: self.noise, ..Self::NEW };

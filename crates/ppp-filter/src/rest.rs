@@ -46,6 +46,11 @@ impl Rest {
         self.elapsed = elapsed;
     }
 
+    /// Time since the last epoch, s.
+    pub(crate) fn elapsed(&self) -> f64 {
+        self.elapsed
+    }
+
     /// A receiver came from where it was predicted, with a standard deviation, to where it was found. One that `moves` is
     /// predicted where it was, and its first step may be any aircraft's.
     pub(crate) fn follow(
@@ -77,6 +82,11 @@ impl Rest {
         if 2.0 * self.anew > satellites as f64 {
             (self.anew, self.leaping) = (0.0, u8::MAX);
         }
+    }
+
+    /// A receiver that is said to rest was seen to move.
+    pub(crate) fn displace(&mut self) {
+        self.leaping = u8::MAX;
     }
 
     /// A receiver at rest is found somewhere, with a standard deviation that tells where it is.

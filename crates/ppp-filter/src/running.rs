@@ -6,6 +6,7 @@ use crate::channel::Channel;
 use crate::clock_jump::ClockJump;
 use crate::collected::collected;
 use crate::consistency::Consistency;
+use crate::displacement::{Change, Displacement};
 use crate::line::{Line, Row};
 use crate::median::median;
 use crate::phase_monitor::is_judged;
@@ -41,6 +42,11 @@ const RELINEARISATIONS: usize = 5;
 /// The model is one of the ground: what is found elsewhere is none, distances from the Earth's centre, m.
 pub(crate) const GROUND: core::ops::Range<f64> = 6.3e6..6.5e6;
 
+/// By so much at the most the direction to a satellite turns, rad/s.
+const SKY_TURNS: f64 = 1.5e-4;
+/// A receiver that was seen to move may be so many times as far away: what is known of it before pulls it back by little.
+const ANYWHERE: f64 = 5.0;
+
 /// Median of the squares of standard normal numbers.
 const MEDIAN_OF_SQUARES: f64 = 0.455;
 
@@ -73,6 +79,7 @@ pub(crate) struct Running<const N: usize> {
     offsets: Offsets,
     pub(crate) consistency: Consistency,
     pub(crate) rest: Rest,
+    displacement: Displacement,
     /// By how many milliseconds the phases are ahead of the codes since the beginning.
     ahead: i32,
     /// The jump of the present epoch.
@@ -139,6 +146,7 @@ impl<const N: usize> Running<N> {
             offsets: Offsets::default(),
             consistency: Consistency::default(),
             rest: Rest::default(),
+            displacement: Displacement::NEW,
             ahead: 0,
             jump: None,
         })
@@ -201,11 +209,38 @@ impl<const N: usize> Running<N> {
         let contradicted = |line: &&Line| line.slipped == Some(Slipped::Contradicted);
         let anew = lines.iter().map(|(_, line)| line).filter(contradicted).count();
         self.rest.restart(anew, lines.len());
+        if matches!(config.motion, Motion::Static) {
+            self.follow_displacement(&lines)?;
+        }
         let mut decisions = collected(lines.iter().map(|_| [Decision::NONE; 2]));
         self.settle(receiver, &mut site, &mut lines, &mut decisions, config)?;
         self.monitor(&lines, &decisions, config);
         self.consistency.update(decisions.as_flattened().iter());
         Ok(self.solution(&site, &lines, &decisions, config))
+    }
+
+    /// Lets a receiver that is said to rest be elsewhere, if the phases' changes show that it is: they keep their ambiguities, which
+    /// tell where.
+    fn follow_displacement(&mut self, lines: &Lines<'_, '_, N>) -> Result<(), Error> {
+        // While a place is not known, the sky that turns changes phases, too.
+        let turned = self.deviation() * SKY_TURNS * self.rest.elapsed();
+        let change = |line: &Line| {
+            let before = self.channels.get(line.state)?.as_ref()?.monitor.residual()?;
+            let [_, now] = line.innovations(&self.estimate.mean, &Vector3::zeros());
+            let own = line.phase_variance * line.phase_noise + line.clock_variance;
+            let variance = 2.0 * own + turned * turned;
+            Some(Change { sight: line.expected.sight, phase: now - before, variance })
+        };
+        let kept = lines.iter().map(|(_, line)| line).filter(|line| line.slipped.is_none());
+        let changes: Vec<_, N> = collected(kept.filter_map(change));
+        if let Some(step) = self.displacement.of(&changes) {
+            let variance = ANYWHERE * ANYWHERE * step.norm_squared();
+            for coordinate in 0..3 {
+                self.estimate.add_variance_at(coordinate, variance)?;
+            }
+            self.rest.displace();
+        }
+        Ok(())
     }
 
     /// Begins the receiver's clock anew at the median code, and those of systems beside it that were not `known`.

@@ -165,7 +165,7 @@ impl<const N: usize> Epoch<N> {
             if !above {
                 return None;
             }
-            let sine = libm::sin(direction.elevation);
+            let sine = expected.local.z;
             // Both are told of L1.
             let ratio = FREQUENCY[0] / it.carriers.frequency()[0];
             let (delay, left) = match (is_alone, ionosphere) {

@@ -1,10 +1,10 @@
 //! The first position, from the codes alone.
 
+use crate::least_squares::Step;
 use crate::{Error, SatelliteObservation};
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_gnss_ppp::{Constellation, eccentricity_clock, sagnac};
-use kestirim_kalman::{Covariance, Gaussian, SparseRow};
-use nalgebra::{SVector, Vector3};
+use nalgebra::Vector3;
 
 /// Position and receiver clock from one epoch's codes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,27 +84,25 @@ fn least_squares(
     let mut solution = CodePosition { position: Vector3::zeros(), clock: 0.0 };
     let mut prior = UNKNOWN;
     for _ in 0..ITERATIONS {
-        let mut step = Gaussian::new(SVector::zeros(), Covariance::from_variances(&[prior; 4]));
+        let mut step = Step::unknown(prior);
         let mut count = 0;
         for (index, observation) in observations.iter().enumerate() {
             if !used(index) {
                 continue;
             }
             let Some((misfit, sight)) = compare(observation, &solution) else { continue };
-            let row = SparseRow::new([(0, -sight.x), (1, -sight.y), (2, -sight.z), (3, 1.0)]);
-            let innovation = misfit - row.dot(&step.mean).unwrap_or(0.0);
-            step.update(&row, innovation, 1.0).map_err(|_| Error::PoorGeometry)?;
+            step.take_in(&sight, misfit, 1.0).map_err(|_| Error::PoorGeometry)?;
             count += 1;
         }
         if count < 4 {
             return Err(Error::TooFewSatellites);
         }
-        solution.position += step.mean.xyz();
-        solution.clock += step.mean.w;
-        prior = if step.mean.norm() < NEAR { NEAR * NEAR } else { UNKNOWN };
-        if step.mean.norm() < 1e-2 {
-            let spread = step.covariance.variances().max();
-            return if spread < POOR { Ok(solution) } else { Err(Error::PoorGeometry) };
+        solution.position += step.coordinates();
+        solution.clock += step.clock();
+        let length = step.length();
+        prior = if length < NEAR { NEAR * NEAR } else { UNKNOWN };
+        if length < 1e-2 {
+            return if step.spread() < POOR { Ok(solution) } else { Err(Error::PoorGeometry) };
         }
     }
     Err(Error::PoorGeometry)

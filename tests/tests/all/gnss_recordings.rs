@@ -9,7 +9,7 @@ use std::slice;
 use host_sim::metrics::{error_over_sigma, rms};
 use kestirim_gnss_ppp::{Correction, Corrections, Geodetic, pole_tide};
 use kestirim_ppp_filter::{Config, Estimator, Motion, SatelliteObservation};
-use kestirim_replay::gnss::{Accuracy, Order, Pass, Paths, Recording, follow};
+use kestirim_replay::gnss::{Accuracy, Fix, Order, Pass, Paths, Recording, follow};
 use kestirim_tests::gnss::{ACOR, ESBC, ESBC_INJECTED, ESBC_MULTI, Station, TLSE, lengthen};
 use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;
@@ -172,6 +172,31 @@ fn faults_of_other_days() {
             let what = format!("{}, seed {seed}", station.observations);
             let [_, rms, _] = measures(&what, &station.compare(&fixes));
             assert!(rms <= most, "{what}: {rms} mm");
+        }
+    }
+}
+
+/// A tripod that is knocked at noon: a receiver that is said to rest is found where it stands then.
+#[test]
+fn a_receiver_that_is_knocked() {
+    const NOON: f64 = 43_200.0;
+    for station in [ESBC, ACOR, TLSE] {
+        let Some(recording) = read(station) else { return };
+        for knock in [[0.2, 0.0, 0.0], [0.0, -0.3, 0.1]].map(Vector3::from) {
+            let away = |t: f64| if t < NOON { Vector3::zeros() } else { knock };
+            let config = Config::new(Motion::Static);
+            let fixes = station.follow(&recording, config, Corrections::ALL, away, |_, _| {});
+            let off =
+                |fix: &Fix| (fix.position - Vector3::from(station.truth) - away(fix.t)).norm();
+            let after = fixes.iter().filter(|fix| fix.t >= NOON).map(off).fold(0.0, f64::max);
+            let last = fixes.last().map(off).expect("a position");
+            println!(
+                "{}: {:.0} mm at the most after it, {:.0} mm at the end",
+                station.observations,
+                1e3 * after,
+                1e3 * last
+            );
+            assert!(after < 0.12 && last < 0.02, "{after} m, {last} m");
         }
     }
 }

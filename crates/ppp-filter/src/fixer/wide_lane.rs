@@ -77,8 +77,9 @@ pub(super) fn whole<const N: usize>(candidates: &Vec<Candidate, N>) -> Vec<Candi
         for candidate in of_system() {
             let angle = core::f64::consts::TAU * candidate.wide;
             let weight = 1.0 / (candidate.sigma * candidate.sigma + FLOOR);
-            sine += weight * libm::sin(angle);
-            cosine += weight * libm::cos(angle);
+            let (up, along) = libm::sincos(angle);
+            sine += weight * up;
+            cosine += weight * along;
         }
         let fraction = libm::atan2(sine, cosine) / core::f64::consts::TAU;
         for candidate in of_system() {

@@ -1,7 +1,7 @@
 //! Which satellites there are, and which state is whose ambiguity.
 
 use heapless::Vec;
-use kestirim_gnss_ppp::{Arc, Constellation, Expected, Site, Slip};
+use kestirim_gnss_ppp::{Arc, Constellation, Expected, Site, Slip, gradient_mapping};
 
 use super::{Lines, Running};
 use crate::channel::Channel;
@@ -51,7 +51,7 @@ impl<const N: usize> Running<N> {
             let phase = self.repaired(observation);
             let mut line = Line::new(observation, phase, expected, state, slipped, config);
             line.offset = offset;
-            line.gradients = self.has_gradients().then(|| expected.direction.gradient_mapping());
+            line.gradients = self.has_gradients().then(|| gradient_mapping(&expected.local));
             if config.estimator.patience.is_some()
                 && let Some(channel) = self.channel(state)
             {

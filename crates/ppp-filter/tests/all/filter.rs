@@ -2,7 +2,7 @@
 
 use crate::sky::{START, marker, observe, spoil};
 use core::slice;
-use kestirim_gnss_ppp::{FREQUENCY, Receiver, Site, Slip};
+use kestirim_gnss_ppp::{FREQUENCY, Receiver, Site, Slip, gradient_mapping};
 use kestirim_ppp_filter::{
     Config, Deviation, Error, Estimator, Health, Motion, PppFilter, SatelliteObservation,
     SatelliteReport, Slipped, Solution, states,
@@ -376,7 +376,7 @@ fn gradients_are_found_where_they_can_be() {
             for observation in observations {
                 let SatelliteObservation { satellite, carriers, ref mut state, .. } = *observation;
                 let expected = site.expect(state, carriers, None, None).unwrap();
-                let mapping = expected.direction.gradient_mapping();
+                let mapping = gradient_mapping(&expected.local);
                 let delay: f64 = mapping.iter().zip(GRADIENTS).map(|(m, g)| m * g).sum();
                 state.clock_interval = clock_interval;
                 spoil(slice::from_mut(observation), satellite, delay, delay);

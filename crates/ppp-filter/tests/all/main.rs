@@ -2,6 +2,7 @@
 
 mod filter;
 mod lean;
+mod moved;
 mod single_point;
 mod sky;
 mod systems;

@@ -113,7 +113,7 @@ impl Epochs {
                 + CLOCK[0]
                 + CLOCK[1] * index as f64
                 + WET_DELAY * expected.wet_mapping;
-            let slant = IONOSPHERE / libm::sin(expected.direction.elevation);
+            let slant = IONOSPHERE / expected.local.z;
             let wrong = |(who, by): (usize, f64)| {
                 if index == OUTLIERS && satellite == who { by } else { 0.0 }
             };
@@ -163,7 +163,7 @@ pub fn in_orbit(satellite: usize, elapsed: f64) -> SatelliteState {
     let mean_anomaly = argument.to_radians() + motion * elapsed;
     let mut anomaly = mean_anomaly;
     for _ in 0..8 {
-        anomaly = mean_anomaly + eccentricity * libm::sin(anomaly);
+        anomaly = mean_anomaly + eccentricity * libm::sincos(anomaly).0;
     }
     let (sine, cosine) = libm::sincos(anomaly);
     let minor = libm::sqrt(1.0 - eccentricity * eccentricity);

@@ -4,8 +4,8 @@ use kestirim_gnss_ppp::{
     Arc, Bodies, BodyAxes, Carriers, Clock, ClockSample, Constellation, Correction, Corrections,
     Direction, Ephemeris, Geodetic, GpsTime, Klobuchar, OceanLoading, Orbit, OrbitSample, Pattern,
     Receiver, SatelliteState, Site, SlipLimits, Troposphere, carried_along, eccentricity_clock,
-    greenwich_sidereal_time, pole_tide, sagnac, shapiro_delay, solid_tide, wind_up,
-    zenith_hydrostatic, zenith_wet,
+    gradient_mapping, greenwich_sidereal_time, pole_tide, sagnac, shapiro_delay, solid_tide,
+    wind_up, zenith_hydrostatic, zenith_wet,
 };
 use nalgebra::Vector3;
 
@@ -141,7 +141,8 @@ fn earth() {
     keep(Geodetic::from_ecef(&matrix()));
     keep(Geodetic::to_ecef(&place()));
     keep(Geodetic::enu_from_ecef(&place()));
-    keep(Direction::gradient_mapping(direction()));
+    keep(Direction::local(direction()));
+    keep(gradient_mapping(&matrix()));
     keep(Direction::of(&matrix(), &place()));
     let bodies = any(Bodies::at(time(), number()));
     keep(pole_tide(&matrix(), numbers(), time()));

@@ -1,0 +1,206 @@
+//! How far a receiver that is said to rest has gone since the epoch before, from its phases alone.
+
+use crate::least_squares::Step;
+use nalgebra::Vector3;
+
+/// What is not known of the place and of the clock, which codes tell to metres, m².
+const UNKNOWN: f64 = 1e6;
+/// Nothing is left out.
+const NONE: [usize; 2] = [usize::MAX; 2];
+/// Fewer satellites do not show whether their changes agree.
+const FEWEST: usize = 6;
+/// A receiver has moved that is farther from where it was than so many standard deviations, by the noise that the changes show
+/// themselves: on four clean days of three stations none is farther than 6.6.
+const FARTHEST: f64 = 10.0;
+/// The same by the changes of all satellites but any two.
+const STILL_FAR: f64 = 5.0;
+/// Changes that differ from a motion by more, in their variances, are slips.
+const MISFIT: f64 = 9.0;
+/// What an epoch counts for in the noise of the changes.
+const SHARE: f64 = 0.03;
+/// The noise is never less than this part of the variances said.
+const LEAST: f64 = 0.02;
+
+/// Tells when a receiver that is said to rest goes elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Displacement {
+    /// Mean square of the changes beside the clock's, in their variances.
+    noise: f64,
+}
+
+/// What changed of a satellite since it was last used.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Change {
+    /// Unit vector from the receiver to it.
+    pub(crate) sight: Vector3<f64>,
+    /// By how much its phase is longer than a receiver at rest would have it, m.
+    pub(crate) phase: f64,
+    /// The variance of that, m².
+    pub(crate) variance: f64,
+}
+
+impl Displacement {
+    pub(crate) const NEW: Self = Self { noise: 1.0 };
+
+    /// Where the phases' changes since the epoch before take a receiver, m, if that surely is another place, whichever two of
+    /// them are left out: they may have slipped.
+    ///
+    /// Ambiguities do not change from one epoch to the next, nor do delays by much: what all phases change by in common is the clock
+    /// and a motion (time-differenced carrier phases; van Graas and Soloviev 2004).
+    #[inline(never)] // Of receivers at rest, once an epoch.
+    pub(crate) fn of(&mut self, changes: &[Change]) -> Option<Vector3<f64>> {
+        let freedom = changes.len().checked_sub(1).filter(|others| *others > FEWEST)?;
+        let unrest = unrest(changes, NONE);
+        let noise = self.noise.max(LEAST);
+        let mut seen = unrest / freedom as f64;
+        let mut moved = None;
+        // No motion explains more than there is, and at rest there is little.
+        if unrest > FARTHEST * FARTHEST * noise
+            && let Some(all) = Motion::beyond(FARTHEST, changes, NONE, noise)
+        {
+            let count = changes.len();
+            let is_seen_without = |first: usize| {
+                let mut seconds = first..count;
+                let beyond = |left_out| Motion::beyond(STILL_FAR, changes, left_out, noise);
+                seconds.all(|second| beyond([first, second]).is_some())
+            };
+            if (0..count).all(is_seen_without) {
+                // What a motion explains is no noise.
+                seen = all.misfit;
+                moved = Some(all.step);
+            }
+        }
+        self.noise += SHARE * (seen.min(MISFIT) - self.noise);
+        moved
+    }
+}
+
+/// All changes but two.
+fn all_but(changes: &[Change], left_out: [usize; 2]) -> impl Iterator<Item = &Change> {
+    let numbered = changes.iter().enumerate();
+    numbered.filter(move |(index, _)| !left_out.contains(index)).map(|(_, change)| change)
+}
+
+/// Sum of the squares of all changes but two beside a clock that changed, in their variances.
+#[inline(never)] // Wanted at two places, once in flash.
+fn unrest(changes: &[Change], left_out: [usize; 2]) -> f64 {
+    let (mut weights, mut sum, mut squares) = (0.0, 0.0, 0.0);
+    // From the first, so that nothing is lost to rounding where a clock leaps far.
+    let origin = changes.first().map_or(0.0, |it| it.phase);
+    for change in all_but(changes, left_out) {
+        let (weight, phase) = (1.0 / change.variance, change.phase - origin);
+        weights += weight;
+        sum += weight * phase;
+        squares += weight * phase * phase;
+    }
+    squares - sum * sum / weights
+}
+
+/// A motion that explains changes.
+#[derive(Clone, Copy, Debug)]
+struct Motion {
+    /// Where, m.
+    step: Vector3<f64>,
+    /// Mean square of what is left of the changes, in their variances.
+    misfit: f64,
+}
+
+impl Motion {
+    /// Of all changes but two, if it is farther than so many deviations, where this is the noise of changes before, and if they are
+    /// not too few.
+    #[inline(never)] // Wanted at two places, once in flash.
+    fn beyond(
+        deviations: f64,
+        changes: &[Change],
+        left_out: [usize; 2],
+        noise: f64,
+    ) -> Option<Self> {
+        let mut moved = Step::unknown(UNKNOWN);
+        let (mut count, mut left) = (0_u8, 0.0);
+        for change in all_but(changes, left_out) {
+            left += moved.take_in(&change.sight, change.phase, change.variance).ok()?;
+            count = count.saturating_add(1);
+        }
+        if usize::from(count) < FEWEST {
+            return None;
+        }
+        let misfit = left / f64::from(count - 4);
+        // What it explains beside the clock: its square, in its variances.
+        let square = unrest(changes, left_out) - left;
+        let is_beyond = square > deviations * deviations * misfit.max(noise) && misfit < MISFIT;
+        is_beyond.then_some(Self { step: moved.coordinates(), misfit })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nine satellites, whose phases a motion and a clock change, and noise of so many centimetres.
+    fn changes(motion: [f64; 3], noise: f64) -> [Change; 9] {
+        let of = |at: usize| {
+            let (azimuth, elevation) = (at as f64 * 2.4, 0.3 + 0.13 * at as f64);
+            let (along, up) = (elevation.cos(), elevation.sin());
+            let sight = Vector3::new(along * azimuth.cos(), along * azimuth.sin(), up);
+            let noise = 0.01 * noise * ((7 * at * at) as f64).sin();
+            let phase = 12.5 - sight.dot(&Vector3::from(motion)) + noise;
+            Change { sight, phase, variance: 1e-4 }
+        };
+        core::array::from_fn(of)
+    }
+
+    fn displacement(changes: &[Change]) -> Option<Vector3<f64>> {
+        let mut fresh = Displacement::NEW;
+        fresh.of(changes)
+    }
+
+    #[test]
+    fn a_receiver_at_rest_has_not_moved_and_a_knocked_one_has() {
+        assert_eq!(displacement(&changes([0.0; 3], 1.0)), None);
+        assert_eq!(displacement(&changes([0.03, 0.0, 0.0], 1.0)), None, "it may be noise");
+        for motion in [[0.15, 0.0, 0.0], [0.0, -0.3, 0.0], [0.1, 0.1, 0.5], [30.0, -20.0, 10.0]] {
+            let moved = displacement(&changes(motion, 1.0)).expect("a motion");
+            assert!((moved - Vector3::from(motion)).norm() < 0.05, "{moved}");
+        }
+    }
+
+    #[test]
+    fn noise_is_no_motion_and_slips_are_none() {
+        assert_eq!(displacement(&changes([0.15, 0.0, 0.0], 20.0)), None, "noise is as large");
+        let mut slipped = changes([0.0; 3], 1.0);
+        slipped[2].phase += 0.19;
+        slipped[5].phase -= 0.48;
+        assert_eq!(displacement(&slipped), None);
+        assert_eq!(displacement(&changes([9.0, 0.0, 0.0], 0.0)[..7]), None, "they are too few");
+        let mut one = changes([0.0; 3], 0.1);
+        one[7].phase += 0.5;
+        assert_eq!(displacement(&one), None, "without it there is no motion");
+        one[3].phase -= 0.3;
+        assert_eq!(displacement(&one), None, "nor without both");
+        assert_eq!(displacement(&changes([f64::NAN, 0.0, 0.0], 0.1)), None);
+    }
+
+    #[test]
+    fn of_phases_that_were_quiet_less_is_a_motion() {
+        let mut quiet = Displacement::NEW;
+        let small = changes([0.03, 0.0, 0.0], 0.2);
+        assert_eq!(quiet.of(&small), None);
+        for _ in 0..100 {
+            assert_eq!(quiet.of(&changes([0.0; 3], 0.2)), None);
+        }
+        assert!(quiet.of(&small).is_some());
+    }
+
+    #[test]
+    fn a_motion_that_goes_on_is_not_taken_for_noise() {
+        let mut carried = Displacement::NEW;
+        for _ in 0..100 {
+            carried.of(&changes([0.0; 3], 0.2));
+        }
+        for step in 0..100 {
+            assert!(carried.of(&changes([0.05, 0.0, 0.0], 0.2)).is_some(), "{step}");
+        }
+    }
+}
