@@ -41,7 +41,7 @@ pub(crate) struct Positioning {
 }
 
 layout! {
-    [] for Positioning as "c/gnss", 2, f64, [STATES]
+    [] for Positioning as "c/gnss", 3, f64, [STATES]
 }
 
 impl Handle for Gnss {

@@ -36,7 +36,7 @@ pub(crate) struct Walk {
 }
 
 layout! {
-    [] for Walk as "c/pedestrian", 2, Number, []
+    [] for Walk as "c/pedestrian", 3, Number, []
 }
 
 impl Handle for Pedestrian {

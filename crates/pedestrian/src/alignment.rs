@@ -118,6 +118,11 @@ impl<T: Scalar> Alignment<T> {
         &self.accelerometer_bias
     }
 
+    /// By what share of itself gravity at rest was off.
+    pub(crate) fn gravity_off(&self) -> T {
+        (self.gravity - T::ONE).abs()
+    }
+
     /// Keeps what was learnt and forgets the stream, to begin it again.
     pub(crate) fn rewound(mut self) -> Self {
         self.block = Block::new();

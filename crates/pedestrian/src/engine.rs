@@ -24,6 +24,8 @@ pub(crate) struct Engine<T: Scalar, N> {
     was_stance: bool,
     /// By how much the body turned in the step before (rad); zero after a gap, in which that is not known.
     turn: SVector<T, 3>,
+    /// By how much the foot was put elsewhere since the last stride, where it landed (m).
+    moved: T,
     /// A swing ended with a velocity that only a lost tilt explains; a calm stance will level the foot.
     is_tilted: bool,
     pub(crate) clipping: Clipping<T>,
@@ -48,6 +50,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             health: Health::new(),
             was_stance: false,
             turn: SVector::zeros(),
+            moved: T::ZERO,
             is_tilted: false,
         }
     }
@@ -193,15 +196,25 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                         &step.angular_rate,
                         self.config.contact_height,
                     );
+                    let before = navigator.position();
                     navigator.zero_velocity(&ZeroVelocity {
                         velocity,
                         statistic: verdict.statistic,
                         interval,
                         landing,
                     });
+                    if landing {
+                        let [x, y, _] = *(navigator.position() - before).as_array();
+                        self.moved += x.hypot(y);
+                    }
                 }
             }
             stride = self.strides.update(sample.time_us, navigator.position(), verdict.stance);
+            if let Some(stride) = &mut stride {
+                stride.gravity_off = self.alignment.gravity_off();
+                let moved = core::mem::replace(&mut self.moved, T::ZERO);
+                self.health.stride(stride.length, moved);
+            }
         }
         self.was_stance = verdict.stance;
         stride
@@ -221,7 +234,8 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     }
 
     pub(crate) fn finish(&mut self) -> Option<Stride<T>> {
-        self.strides.finish()
+        let gravity_off = self.alignment.gravity_off();
+        self.strides.finish().map(|stride| Stride { gravity_off, ..stride })
     }
 
     pub(crate) fn path_length(&self) -> T {

@@ -27,7 +27,8 @@ pub struct Warnings {
     /// again ([`Config::levels`](crate::Config::levels)), but the turn of that moment is not known.
     pub tilt_lost: bool,
     /// Stride by stride too large a velocity is left over: the gyroscope is clipped, its scale or zero has changed, it
-    /// comes late, or the clock runs wrong.
+    /// comes late, or the clock runs wrong. Or the foot is put elsewhere by a quarter of its strides and more: it shuffles, and is taken to
+    /// stand while it moves.
     pub landings_implausible: bool,
     /// Samples are missing: more than 60 ms at once, or more than 40 ms and three times the step before.
     pub gaps: bool,
@@ -61,6 +62,8 @@ pub(crate) struct Health<T: Scalar> {
     force: Repeats<T>,
     rate: Repeats<T>,
     bad_landings: u8,
+    /// By how many more strides than not the foot was put elsewhere by a large share of them where they ended.
+    misplaced: u8,
     /// Smoothed sizes of what is left of the velocity when a swing ends: horizontal and vertical (m/s, earth).
     left_over: [T; 2],
 }
@@ -110,11 +113,17 @@ impl<T: Scalar> Health<T> {
     /// The same upwards.
     const MOST_UPWARDS: f64 = 0.5;
 
+    /// Where a stride ends, the foot is put elsewhere by less than this share of it: on 43 recorded walks by 0.12 at the most in the median.
+    /// Where a shuffling foot is taken to stand while it moves, by 0.6.
+    const MISPLACED_SHARE: f64 = 0.25;
+    /// It is so of most strides, if of so many more than not: on the recorded walks of 4 at the most, but for a foot on a ladder.
+    const MISPLACED: u8 = 6;
+
     pub(crate) fn new() -> Self {
         let nothing = Repeats { last: SVector::zeros(), counts: [0; 3], threes: 0 };
         let warnings = Warnings { never_still: true, ..Warnings::default() };
         let left_over = [T::ZERO; 2];
-        Self { warnings, force: nothing, rate: nothing, bad_landings: 0, left_over }
+        Self { warnings, force: nothing, rate: nothing, bad_landings: 0, misplaced: 0, left_over }
     }
 
     pub(crate) fn warnings(&self) -> Warnings {
@@ -178,6 +187,16 @@ impl<T: Scalar> Health<T> {
         self.warnings.axes_inconsistent |=
             self.bad_landings >= Self::LANDINGS && !self.warnings.gyroscope_saturated;
         is_bad
+    }
+
+    /// A stride of this length ended, and where it did the foot was put elsewhere by so much (m).
+    pub(crate) fn stride(&mut self, length: T, moved: T) {
+        self.misplaced = if moved > length * T::from_f64(Self::MISPLACED_SHARE) {
+            self.misplaced.saturating_add(1)
+        } else {
+            self.misplaced.saturating_sub(1)
+        };
+        self.warnings.landings_implausible |= self.misplaced >= Self::MISPLACED;
     }
 }
 

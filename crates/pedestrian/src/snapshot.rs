@@ -15,7 +15,7 @@ layout! {
     [T: Scalar] for AngularRateEnergy<T> as "stance/rate", 1, T, [];
     // A tracker is of its navigator and of its detector, whichever they are.
     [T: Scalar, N: Layout, D: Layout] for Tracker<T, N, D>
-        as N::NAME, 4, T, [N::VERSION, Name::new(D::NAME).code(), D::VERSION];
-    [T: Scalar] for PathUncertainty<T> as "pedestrian/path", 2, T, [];
+        as N::NAME, 5, T, [N::VERSION, Name::new(D::NAME).code(), D::VERSION];
+    [T: Scalar] for PathUncertainty<T> as "pedestrian/path", 3, T, [];
     [T: Scalar] for MagneticHeading<T> as "pedestrian/north", 1, T, [];
 }

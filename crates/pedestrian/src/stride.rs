@@ -29,6 +29,9 @@ pub struct Stride<T: Scalar> {
     pub unseen: T,
     /// By how much the body turned beyond the end of its gyroscope's range on the way, as it was bridged (rad).
     pub bridged: T,
+    /// By what share of itself gravity at rest was off so far: of a scale of the accelerometer, by which strides are wrong, too, or of a
+    /// zero.
+    pub gravity_off: T,
 }
 
 /// A stance of the foot.
@@ -127,6 +130,7 @@ impl<T: Scalar> Strides<T> {
             heading_change,
             unseen,
             bridged,
+            gravity_off: T::ZERO,
         })
     }
 }

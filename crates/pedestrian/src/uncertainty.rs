@@ -8,7 +8,8 @@ use nalgebra::SVector;
 /// each by a constant of the sensor's class, fitted to walks with known truth
 /// ([the book](https://github.com/kestirim/kestirim/blob/main/docs/src/reliability.md) has the table):
 /// - a rate b at which the heading drifts: the error is b·Σ tₖ·J·Δpₖ, with J a quarter turn;
-/// - a scale s of all strides: s times the distance from the start;
+/// - a scale s of all strides: s times the distance from the start; half of what gravity at rest is off by adds to it, since that may be
+///   the accelerometer's scale or its zero;
 /// - an error of each stride by itself, of the footprint and of the height, and for the height one that is the same in all.
 ///
 /// What a stride says of a way that was not seen and of turns beyond the gyroscope's range is added: a heading that may be another
@@ -34,6 +35,8 @@ pub struct PathUncertainty<T: Scalar> {
     unseen: T,
     /// What a standard deviation of the heading's rate moves the position by (m, earth: x, y).
     turned: SVector<T, 2>,
+    /// Standard deviation of the scale of all strides that gravity at rest shows.
+    scale: T,
     /// How many there were: a number, since a conversion would link double precision.
     strides: T,
 }
@@ -49,6 +52,8 @@ impl<T: Scalar> PathUncertainty<T> {
     pub const UNSEEN_RATE: f64 = 1.5;
     /// … and its share of a turn beyond the gyroscope's range, as it was bridged.
     pub const BRIDGED_SHARE: f64 = 0.02;
+    /// What gravity at rest is off by is to this share the scale of all strides, else a zero along it.
+    pub const SCALE_SHARE: f64 = 0.5;
     /// Standard deviation of a heading that may be any (rad).
     pub const LOST_HEADING: f64 = 1.8;
 
@@ -56,7 +61,7 @@ impl<T: Scalar> PathUncertainty<T> {
     pub fn new(sensor: SensorClass) -> Self {
         let (position, turned) = (SVector::zeros(), SVector::zeros());
         let zero = T::ZERO;
-        Self { sensor, position, heading: zero, unseen: zero, turned, strides: zero }
+        Self { sensor, position, heading: zero, unseen: zero, turned, scale: zero, strides: zero }
     }
 
     /// Takes the next stride.
@@ -70,6 +75,7 @@ impl<T: Scalar> PathUncertainty<T> {
         self.unseen = self.unseen.hypot(stride.unseen * T::from_f64(Self::UNSEEN_SPEED));
         self.turned += SVector::from([-dy * self.heading, dx * self.heading]);
         self.position = stride.position;
+        self.scale = stride.gravity_off * T::from_f64(Self::SCALE_SHARE);
         self.strides += T::ONE;
     }
 
@@ -78,7 +84,7 @@ impl<T: Scalar> PathUncertainty<T> {
         // A root of a sum by halves: the squares of hundreds of metres leave a fixed-point number's range.
         let steps = (self.strides + T::ONE).sqrt();
         let (own, height) = (T::from_f64(Self::FOOTPRINT), T::from_f64(Self::HEIGHT));
-        let scale = self.sensor.stride_scale::<T>();
+        let scale = self.sensor.stride_scale::<T>().hypot(self.scale);
         let ([x, y, _], [along, across]) = (*self.position.as_array(), *self.turned.as_array());
         let own = (own * steps).hypot(self.unseen);
         let of_axis = |position: T, turned: T| (position * scale).hypot(turned).hypot(own);
@@ -105,6 +111,7 @@ mod tests {
                 heading_change: T::ZERO,
                 unseen: T::ZERO,
                 bridged: T::ZERO,
+                gravity_off: T::ZERO,
             });
         }
         uncertainty.standard_deviation().map(T::to_f64)
@@ -136,6 +143,7 @@ mod tests {
                 heading_change: 0.0,
                 unseen: 0.0,
                 bridged: 0.0,
+                gravity_off: 0.0,
             });
         }
         let found = uncertainty.standard_deviation();
@@ -155,6 +163,7 @@ mod tests {
             heading_change: 0.0,
             unseen,
             bridged,
+            gravity_off: 0.0,
         };
         let after = |unseen: f64, bridged: f64| {
             let mut uncertainty = PathUncertainty::<f64>::new(SensorClass::Industrial);
@@ -169,6 +178,23 @@ mod tests {
         assert!((clipped[1] - 0.06 * 21.0).abs() < 0.05 && clipped[0] == clean[0], "{clipped}");
         let lost = after(1000.0, 0.0);
         assert!((lost[1] - (1500.0_f64).hypot(1.8 * 21.0)).abs() < 0.1, "{lost}");
+    }
+
+    #[test]
+    fn a_scale_that_gravity_shows_counts_by_half() {
+        let mut uncertainty = PathUncertainty::<f64>::new(SensorClass::Industrial);
+        uncertainty.add(&Stride {
+            time_us: 0,
+            position: SVector::from([100.0, 0.0, 0.0]),
+            length: 100.0,
+            duration: 1.0,
+            heading_change: 0.0,
+            unseen: 0.0,
+            bridged: 0.0,
+            gravity_off: 0.04,
+        });
+        let [x, ..] = *uncertainty.standard_deviation().as_array();
+        assert!((x - (0.5_f64).hypot(2.0).hypot(0.028 * 2_f64.sqrt())).abs() < 1e-9, "{x} m");
     }
 
     #[test]

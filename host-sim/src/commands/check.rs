@@ -1,6 +1,7 @@
 //! `host-sim check`: what a log shows before it is used.
 
 use clap::{ArgMatches, Command};
+use kestirim_replay::Finding;
 use serde_json::json;
 
 use super::arguments::chosen;
@@ -29,10 +30,14 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
         return output::print(&report.to_string());
     }
     let mut table = output::table();
+    let is_sound = !findings.iter().any(Finding::is_fault);
     for finding in findings {
         let mark = if finding.is_fault() { "!" } else { "" };
         let text = finding.sentence();
         table.add_row([mark, finding.about, &text]);
+    }
+    if is_sound {
+        table.add_row(["", "verdict", "nothing wrong was found"]);
     }
     output::print(&table.to_string())
 }

@@ -25,8 +25,14 @@ fn of(system: &dyn AnySystem) -> Command {
     let outputs = system.outputs().iter().map(|output| file(output.name, "OUT.csv", output.help));
     let mcap = "Write sensors, estimate and truth as MCAP, for viewers such as Foxglove and Rerun";
     let out = "The table of --logs, of the format that its ending says";
-    let logs = "Many recordings instead of one: a pattern such as 'dir/**/*.txt' of the first file above that is required and not \
-                named; in other files' names {dir} and {stem} stand for its folder and its name without ending";
+    let needed = system.files().iter().filter(|field| field.required);
+    let needed: Vec<_> = needed.map(|field| format!("--{}", field.name)).collect();
+    let logs = format!(
+        "Every recording of a pattern such as 'dir/**/*.txt', in place of {}{}; in other files' names {{dir}} and {{stem}} stand for its \
+         folder and its name without ending",
+        if needed.len() > 1 { "that of these which is not named: " } else { "" },
+        needed.join(", ")
+    );
     let logs = Arg::new("logs").long("logs").value_name("PATTERN").help(logs).requires("out");
     let names = system.outputs().iter().map(|it| it.name).chain(["mcap", "json", "synthetic"]);
     let required = system.files().iter().filter(|field| field.required).map(|field| field.name);

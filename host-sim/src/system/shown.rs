@@ -82,7 +82,11 @@ impl Setting {
                 format!("{help} [default: {}]", format!("{default} {unit}").trim_end())
             }
             Kind::Choice { default, .. } => format!("{help} [default: {default}]"),
-            Kind::Switch { default: true } => format!("Turn this off: {help}"),
+            Kind::Switch { default: true } => {
+                let mut words = help.chars();
+                let first = words.next().into_iter().flat_map(char::to_lowercase);
+                format!("Do not {}{}", first.collect::<String>(), words.as_str())
+            }
             _ => help.to_owned(),
         }
     }

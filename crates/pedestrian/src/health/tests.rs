@@ -156,3 +156,17 @@ fn landings_are_averaged_over_eight() {
     assert!(!implausible(2, [0.0, 0.0, 1000.0]) && implausible(3, [0.0, 0.0, 1000.0]));
     assert!(!implausible(100, [0.0, 0.0, 0.119]) && implausible(100, [0.0, 0.0, -0.121]));
 }
+
+#[test]
+fn strides_that_end_elsewhere_by_much_of_their_length_are_told() {
+    let told = |strides: &[(f64, f64)]| {
+        found(|health| strides.iter().for_each(|(length, moved)| health.stride(*length, *moved)))
+            .landings_implausible
+    };
+    let (shuffled, walked) = ((0.24, 0.14), (1.3, 0.1));
+    assert!(told(&[shuffled; 6]) && !told(&[shuffled; 5]));
+    assert!(!told(&[walked; 100]));
+    // A stumble now and then is none.
+    let stumbles: [_; 100] = core::array::from_fn(|at| if at % 2 == 0 { shuffled } else { walked });
+    assert!(!told(&stumbles));
+}

@@ -1,6 +1,9 @@
 //! A foot that stands on what moves: a lift, an escalator, a vehicle.
 
+use nalgebra::{UnitQuaternion, Vector3};
+
 use super::Sample;
+use crate::metrics::median;
 
 /// A foot that turns by less stands, rad/s: even a bare chip's zero is within it.
 const QUIET: f64 = 0.2;
@@ -19,8 +22,13 @@ const RIDE: f64 = 60.0;
 /// … or else so many.
 const ONE_WAY: usize = 4;
 
+/// … and no force across gravity by less than this while its foot does not turn, m/s²: a vehicle begins with as much, …
+const ACROSS: f64 = 0.4;
+/// … beside what it mostly is this long before and after, s.
+const AROUND: f64 = 3.0;
+
 /// The index of the first sample at which a standing foot is carried: for a while, the force is longer or shorter than it mostly
-/// is in that stand. Its direction says nothing, as that changes with the foot's.
+/// is in that stand, or it leans, and the gyroscope did not see the foot turn.
 pub(super) fn carried(samples: &[Sample]) -> Option<usize> {
     let mut begin = 0;
     for index in 0..=samples.len() {
@@ -36,36 +44,63 @@ pub(super) fn carried(samples: &[Sample]) -> Option<usize> {
     None
 }
 
+/// The mean force over a window.
+struct Window {
+    /// Where it begins.
+    at: usize,
+    /// As long as it is on average, m/s².
+    length: f64,
+    /// As the foot stood at the beginning of the stand, m/s².
+    force: Vector3<f64>,
+}
+
 fn in_stand(samples: &[Sample]) -> Option<usize> {
     let (first, last) = (samples.first()?, samples.last()?);
-    let seconds = |sample: &Sample| (sample.time_us - first.time_us) as f64 * 1e-6;
-    if seconds(last) < LONG {
+    if (last.time_us - first.time_us) as f64 * 1e-6 < LONG {
         return None;
     }
-    let window = |sample: &Sample| (seconds(sample) / WINDOW) as usize;
-    let windows: Vec<(usize, f64)> = samples
-        .chunk_by(|a, b| window(a) == window(b))
-        .map(|inside| {
-            let sum: f64 = inside.iter().map(|it| norm(&it.specific_force)).sum();
-            (inside.len(), sum / inside.len() as f64)
-        })
-        .collect();
-    let mut lengths: Vec<f64> = windows.iter().map(|(_, length)| *length).collect();
-    lengths.sort_by(f64::total_cmp);
-    let usual = lengths[lengths.len() / 2];
+    let windows = windows(samples);
+    [up_or_down(samples, &windows), across(&windows)].into_iter().flatten().min()
+}
+
+fn windows(samples: &[Sample]) -> Vec<Window> {
+    let begin_us = samples[0].time_us;
+    // Who stands turns by nothing mostly.
+    let usual =
+        |axis: usize| median(&samples.iter().map(|it| it.angular_rate[axis]).collect::<Vec<_>>());
+    let zero = Vector3::from([0, 1, 2].map(usual));
+    let mut turned = UnitQuaternion::identity();
+    let mut before_us = begin_us;
+    let mut at = 0;
+    let window = |sample: &Sample| ((sample.time_us - begin_us) as f64 * 1e-6 / WINDOW) as usize;
+    let mean = |inside: &[Sample]| {
+        let (mut length, mut force) = (0.0, Vector3::zeros());
+        for sample in inside {
+            let seconds = (sample.time_us - before_us) as f64 * 1e-6;
+            before_us = sample.time_us;
+            let rate = Vector3::from(sample.angular_rate) - zero;
+            turned *= UnitQuaternion::from_scaled_axis(rate * seconds);
+            length += norm(&sample.specific_force);
+            force += turned * Vector3::from(sample.specific_force);
+        }
+        let (count, begin) = (inside.len() as f64, at);
+        at += inside.len();
+        Window { at: begin, length: length / count, force: force / count }
+    };
+    samples.chunk_by(|a, b| window(a) == window(b)).map(mean).collect()
+}
+
+/// Where the force is longer or shorter than it mostly is.
+fn up_or_down(samples: &[Sample], windows: &[Window]) -> Option<usize> {
+    let usual = median(&windows.iter().map(|it| it.length).collect::<Vec<_>>());
     let sign = |length: f64| {
         let more = length - usual;
         if (CHANGE..MOST).contains(&more.abs()) { more.signum() } else { 0.0 }
     };
     // Where each change begins, its sign, and how many windows it lasts.
-    let mut at = 0;
     let changes: Vec<(usize, f64, usize)> = windows
-        .chunk_by(|(_, a), (_, b)| sign(*a) == sign(*b))
-        .map(|run| {
-            let begin = at;
-            at += run.iter().map(|(count, _)| count).sum::<usize>();
-            (begin, sign(run[0].1), run.len())
-        })
+        .chunk_by(|a, b| sign(a.length) == sign(b.length))
+        .map(|run| (run[0].at, sign(run[0].length), run.len()))
         .collect();
     let lasts = |wanted: f64, most: usize| {
         move |(_, sign, windows): &&(usize, f64, usize)| *sign == wanted && *windows >= most
@@ -77,6 +112,26 @@ fn in_stand(samples: &[Sample]) -> Option<usize> {
     });
     let both = both.map(|(begin, _)| begin);
     both.or_else(|| first(1.0, ONE_WAY)).or_else(|| first(-1.0, ONE_WAY))
+}
+
+/// Where the force leans for a while as it does not before and after, by the gyroscope's account of the foot.
+fn across(windows: &[Window]) -> Option<usize> {
+    let around = (AROUND / WINDOW) as usize;
+    let leans = |at: usize| {
+        let [begin, end] = [at.saturating_sub(around), (at + around + 1).min(windows.len())];
+        let usual = [0, 1, 2].map(|axis| {
+            let values = windows[begin..end].iter().map(|it| it.force[axis]);
+            median(&values.collect::<Vec<_>>())
+        });
+        let usual = Vector3::from(usual);
+        let off = windows[at].force - usual;
+        let up = usual.normalize();
+        let across = (off - up * off.dot(&up)).norm();
+        (ACROSS..MOST).contains(&across)
+    };
+    let leaning: Vec<bool> = (0..windows.len()).map(leans).collect();
+    let run = leaning.windows(BOTH_WAYS).position(|run| run.iter().all(|it| *it))?;
+    Some(windows[run].at)
 }
 
 fn norm([x, y, z]: &[f64; 3]) -> f64 {
@@ -123,6 +178,32 @@ mod tests {
             sample.specific_force[2] -= 0.9;
         }
         assert_eq!(carried(&ride), Some(400));
+    }
+
+    #[test]
+    fn a_vehicle_that_begins_to_move_is_found_and_a_foot_that_leans_is_none() {
+        let mut ride = stand(0.0, 0.0, 0.0);
+        for sample in &mut ride[400..500] {
+            sample.specific_force[0] += 0.8;
+        }
+        assert_eq!(carried(&ride), Some(400));
+        // By half a second's turn about y as much of gravity is along x.
+        let mut leaning = stand(0.0, 0.0, 0.0);
+        for (index, sample) in leaning.iter_mut().enumerate() {
+            let angle = 0.0815 * ((index as f64 - 400.0) / 50.0).clamp(0.0, 1.0);
+            if (400..450).contains(&index) {
+                sample.angular_rate[1] -= 0.163;
+            }
+            let turned = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), -angle);
+            sample.specific_force =
+                (turned.inverse() * Vector3::from(sample.specific_force)).into();
+        }
+        assert!(leaning[999].specific_force[0] > 1.0);
+        assert_eq!(carried(&leaning), None);
+        for sample in &mut leaning {
+            sample.angular_rate[1] = 0.0;
+        }
+        assert!(carried(&leaning).is_some(), "without the turn it is a ride");
     }
 
     #[test]

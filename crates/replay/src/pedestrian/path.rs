@@ -26,9 +26,10 @@ impl PathErrors {
     /// As the class of the sensor has them, or as the other foot and right angles left them.
     pub(super) fn of(walk: &Walk) -> Self {
         let class = kestirim_pedestrian::SensorClass::from(walk.sensor);
+        let off = walk.strides.last().map_or(0.0, |stride| stride.gravity_off);
         let mut left = Self {
             rate: class.heading_rate(),
-            scale: class.stride_scale(),
+            scale: class.stride_scale::<f64>().hypot(PathUncertainty::<f64>::SCALE_SHARE * off),
             stride: PathUncertainty::<f64>::FOOTPRINT,
         };
         if let Some(feet) = walk.both_feet {

@@ -70,6 +70,8 @@ pub struct Stride {
     pub unseen_s: f64,
     /// By how much the body turned beyond the end of its gyroscope's range on the way, rad.
     pub bridged_rad: f64,
+    /// By what share of itself gravity at rest was off so far.
+    pub gravity_off: f64,
     /// Standard deviations of the position, m.
     pub sigma_m: [f64; 3],
 }
@@ -315,6 +317,7 @@ impl Stride {
             heading_change_rad: stride.heading_change.to_f64(),
             unseen_s: stride.unseen.to_f64(),
             bridged_rad: stride.bridged.to_f64(),
+            gravity_off: stride.gravity_off.to_f64(),
             sigma_m: [0.0; 3],
         }
     }
@@ -328,6 +331,7 @@ impl Stride {
             heading_change: self.heading_change_rad,
             unseen: self.unseen_s,
             bridged: self.bridged_rad,
+            gravity_off: self.gravity_off,
         }
     }
 

@@ -123,7 +123,7 @@ fn links<'a>(
             findings.push(Finding::note("anchors", format!("{} is never heard", name(anchor))));
             continue;
         }
-        rates.push(format!("{} {:.1} Hz", name(anchor), its.len() as f64 / seconds.max(1e-3)));
+        rates.push(format!("{} at {:.1} Hz", name(anchor), its.len() as f64 / seconds.max(1e-3)));
         let wrong = its.iter().filter(|metres| !metres.is_finite() || **metres <= 0.0).count();
         if wrong * 10 > its.len() {
             findings.push(Finding::fault(
@@ -135,7 +135,12 @@ fn links<'a>(
             ));
         }
     }
-    findings.insert(0, Finding::note("rate", rates.join(", ")));
+    let heard = if rates.is_empty() {
+        "no anchor is heard".to_owned()
+    } else {
+        format!("anchors {}", rates.join(", "))
+    };
+    findings.insert(0, Finding::note("rate", heard));
     findings
 }
 

@@ -27,7 +27,7 @@ const DOUBTED: [(Reason, &str); 3] = [
     ),
     (
         Reason::Rejected,
-        "more than a tenth of the measurements contradict the estimate and are left out",
+        "for a while more than a tenth of the measurements contradict the estimate and are left out",
     ),
     (
         Reason::Time,

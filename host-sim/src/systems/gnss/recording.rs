@@ -11,6 +11,7 @@ use kestirim_replay::gnss::{Paths, Recording, Shelf};
 use super::simulate::{Day, INTERVAL_S, MIDNIGHT, Rates, UTC_MINUS_GPS};
 use crate::Error;
 use crate::system::Files;
+use crate::text;
 
 /// How much of a synthetic day is a recording, s.
 const SYNTHETIC_S: f64 = 8.0 * 3600.0;
@@ -24,6 +25,9 @@ pub fn read(files: &Files) -> Result<Recording, Error> {
     if !files.all("sp3").is_empty() {
         files.required("antex")?;
     } else if files.all("nav").is_empty() && !is_stream(obs) {
+        // One that is not there is not asked for more.
+        let path = obs.to_path_buf();
+        text::regular(obs).map_err(|source| Error::Read { path, source })?;
         let sentence =
             "a file is needed: --sp3 (with --antex), or --nav where there are no precise orbits";
         return Err(Error::Usage(sentence.to_owned()));

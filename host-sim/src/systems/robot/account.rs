@@ -117,6 +117,9 @@ pub(super) fn account(
         account.fact("most left out", worst);
     }
     account.fact("without a position", format!("{:.1} s", report.lost_s));
+    if let Some(last) = last_position(recording, traces) {
+        account.fact("last position", last);
+    }
     if let Some(found) = found {
         account.fact("height of the tag", height::in_words(found));
     }
@@ -140,6 +143,18 @@ pub(super) fn account(
         }
     }
     Ok(account)
+}
+
+/// Where a moving tag is at the end of its log, with its standard deviations, m.
+fn last_position(recording: &Recording, traces: &[Trace]) -> Option<String> {
+    let last = traces.last().filter(|_| !recording.is_static())?.epochs.last()?;
+    let Some(position) = last.position else { return Some("not known".to_owned()) };
+    let axes = ["x", "y", "z"].into_iter().zip(position).zip(last.sigmas_m());
+    let told = axes.map(|((axis, metres), sigma)| match sigma {
+        Some(sigma) => format!("{axis} {metres:.2} ± {sigma:.2} m"),
+        None => format!("{axis} {metres:.2} m"),
+    });
+    Some(told.collect::<Vec<_>>().join(", "))
 }
 
 /// The anchor of which the largest share was left out, if any was.

@@ -111,9 +111,12 @@ impl Recording {
         files.exclude("points", &["truth", "imu", "odom"])?;
         let (anchors, log) = (files.required("anchors")?, files.required("log")?);
         let height = files.one("height");
-        if height.is_some_and(|path| path.to_str().is_some_and(|it| it.parse::<f64>().is_ok())) {
-            let problem = "--height: expected metres above the floor, or a file";
-            return Err(Error::Usage(problem.to_owned()));
+        let is_number = |path: &Path| path.to_str().is_some_and(|it| it.parse::<f64>().is_ok());
+        if let Some(path) = height.filter(|path| is_number(path) || !path.exists()) {
+            return Err(Error::Usage(format!(
+                "--height: expected metres above the floor, such as 0.6, or a file, found {:?}",
+                path.display().to_string()
+            )));
         }
         let mut recording = Self {
             path: Some(log.to_path_buf()),

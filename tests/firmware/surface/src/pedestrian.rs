@@ -114,9 +114,18 @@ fn doubts<T: Scalar>() {
     keep((SensorClass::height_drift::<T>(sensor), SensorClass::drifts_by(sensor, number::<T>())));
     let mut uncertainty = any(PathUncertainty::<T>::new(sensor));
     let (length, duration, heading_change) = (number(), number(), number());
-    let (time_us, position, unseen, bridged) = (whole(), matrix(), number(), number());
-    let stride =
-        any(Stride { time_us, position, length, duration, heading_change, unseen, bridged });
+    let (time_us, position, unseen, bridged, gravity_off) =
+        (whole(), matrix(), number(), number(), number());
+    let stride = any(Stride {
+        time_us,
+        position,
+        length,
+        duration,
+        heading_change,
+        unseen,
+        bridged,
+        gravity_off,
+    });
     PathUncertainty::add(any(&mut uncertainty), &stride);
     keep(PathUncertainty::standard_deviation(&uncertainty));
 }

@@ -21,6 +21,7 @@ fn round(rate: f64, scale: f64, rise: f64) -> Walk {
             heading_change_rad: std::f64::consts::TAU / 120.0 + rate,
             unseen_s: 0.0,
             bridged_rad: 0.0,
+            gravity_off: 0.0,
             sigma_m: [9.0; 3],
         });
     }

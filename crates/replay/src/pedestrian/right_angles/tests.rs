@@ -27,6 +27,7 @@ fn walk(legs: &[(u32, f64)], drift: f64) -> Walk {
                 heading_change_rad: 0.0,
                 unseen_s: 0.0,
                 bridged_rad: 0.0,
+                gravity_off: 0.0,
                 sigma_m: [0.0; 3],
             });
         }

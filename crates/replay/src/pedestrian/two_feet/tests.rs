@@ -66,6 +66,7 @@ fn foot(is_left: bool, frame: f64, mut wrong: Wrong) -> Walk {
                 heading_change_rad: 0.0,
                 unseen_s: 0.0,
                 bridged_rad: 0.0,
+                gravity_off: 0.0,
                 sigma_m: [9.0; 3],
             });
         }

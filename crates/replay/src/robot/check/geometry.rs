@@ -45,7 +45,9 @@ const HEIGHTS: [f64; 6] = [-1.5, -1.0, -0.5, 0.5, 1.0, 1.5];
 /// What all ranges may be too long by, beyond what a common bias of half a metre explains, m.
 const EXCESSES: [f64; 4] = [1.0, 1.5, 2.0, 3.0];
 /// What ranges may be instead of metres, and what to do about it. (Yards are as much less as a usual delay of antennas.)
-const SCALES: [(f64, &str, &str); 3] = [
+const SCALES: [(f64, &str, &str); 5] = [
+    (1e-3, "in millimetres", ": --units range=mm"),
+    (1e-2, "in centimetres", ": --units range=cm"),
     (0.3048, "in feet", ": --units range=ft"),
     (0.5, "halved", ": they may be those of there and back"),
     (2.0, "doubled", ": they may have been halved twice"),
@@ -118,10 +120,23 @@ pub(super) fn check(
     let left = |moments: &[Moment]| {
         Tried { moments, anchors: &places, height }.left(Moment::clone, &places, height)
     };
-    let left = left(&moments).or_else(|| {
+    let first = left(&moments).or_else(|| {
         moments = moments::interpolated(parts);
         left(&moments)
-    })?;
+    });
+    let Some(left) = first else {
+        // Ranges a hundred times as long as the room lead least squares nowhere.
+        return [moments::at_once(parts), moments].iter().find_map(|moments| {
+            let tried = Tried { moments, anchors: &places, height };
+            let (with, (how, what)) = tried.another_unit()?;
+            (with < EXPLAINED_M).then(|| {
+                let found = "ranges and anchors agree on no place".to_owned();
+                let remedy = format!("{how} they would agree within {with:.2} m{what}");
+                let consequence = "there is no position";
+                Finding::fault("geometry", Reason::Units, found, consequence, remedy)
+            })
+        });
+    };
     let agree =
         || Finding::note("geometry", format!("ranges and anchors agree within {left:.2} m"));
     let needed = if height.is_some() { 3 } else { 4 };
@@ -209,17 +224,29 @@ impl Tried<'_> {
         let agree = |with: f64| format!("they would agree within {with:.2} m");
         // Of four anchors three are left without one, and one range to spare; of three anchors there is but one.
         let is_clear = is_contradiction || self.anchors.len() > 4;
-        let scaled = SCALES.into_iter().filter_map(|scale| {
-            let with = self.scaled(scale.0).and_then(explained)?;
-            Some((with, scale))
-        });
-        if let Some((with, (_, how, what))) = scaled.min_by(|a, b| a.0.total_cmp(&b.0)) {
-            return Some((Some(Reason::Units), format!("{how} {}{what}", agree(with))));
-        }
-        if let Some((with, [a, b])) = self.swapped()
+        if let Some((with, (how, what))) = self.another_unit()
             && let Some(with) = explained(with)
         {
-            let remedy = format!("with {} and {} swapped {}", names[a], names[b], agree(with));
+            return Some((Some(Reason::Units), format!("{how} {}{what}", agree(with))));
+        }
+        let swapped: Vec<_> = self
+            .swapped()
+            .into_iter()
+            .filter_map(|(with, pair)| Some((explained(with)?, pair)))
+            .collect();
+        if let Some((best, [a, b])) = swapped.first() {
+            let of_both = |[a, b]: [usize; 2]| format!("{} and {}", names[a], names[b]);
+            let agree = agree(*best);
+            let as_well = swapped.iter().skip(1).find(|(with, _)| *with < best + AS_WELL_M);
+            let remedy = match as_well {
+                None => format!("with {} swapped {agree}", of_both([*a, *b])),
+                // Both rooms are each other's mirror image, in which distances are the same.
+                Some((_, other)) => format!(
+                    "with {} swapped {agree}, with {} as well: only a plan of the room tells which, the other is its mirror image",
+                    of_both([*a, *b]),
+                    of_both(*other)
+                ),
+            };
             return Some((Some(Reason::Anchor), remedy));
         }
         if let Some((with, by)) = self.shifted().filter(|_| is_clear)
@@ -264,9 +291,14 @@ impl Tried<'_> {
         None
     }
 
-    fn scaled(&self, by: f64) -> Option<f64> {
-        let change = |moment: &Moment| moment.iter().map(|(a, range)| (*a, range * by)).collect();
-        self.left(change, self.anchors, self.height)
+    /// As if the ranges were in the unit that fits best: how that is said, and what to do about it.
+    fn another_unit(&self) -> Option<(f64, (&'static str, &'static str))> {
+        let each = SCALES.into_iter().filter_map(|(by, how, what)| {
+            let change =
+                |moment: &Moment| moment.iter().map(|(a, range)| (*a, range * by)).collect();
+            Some((self.left(change, self.anchors, self.height)?, (how, what)))
+        });
+        each.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// As if all ranges were too long by the same.
@@ -279,7 +311,8 @@ impl Tried<'_> {
         each.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    fn swapped(&self) -> Option<(f64, [usize; 2])> {
+    /// With any two anchors in each other's place, the best first.
+    fn swapped(&self) -> Vec<(f64, [usize; 2])> {
         let count = self.anchors.len();
         let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
         let each = pairs.filter_map(|pair| {
@@ -287,7 +320,9 @@ impl Tried<'_> {
             anchors.swap(pair[0], pair[1]);
             Some((self.left(Moment::clone, &anchors, self.height)?, pair))
         });
-        each.min_by(|a, b| a.0.total_cmp(&b.0))
+        let mut each: Vec<_> = each.collect();
+        each.sort_by(|a, b| a.0.total_cmp(&b.0));
+        each
     }
 
     /// As if the log counted the anchors from another number on than the list.

@@ -311,7 +311,7 @@ impl Report {
             }
             let never = || "never below 10 cm for 15 min".to_owned();
             let minutes = |minutes: f64| format!("{minutes:.1} min");
-            fact("convergence", accuracy.convergence_min.map_or_else(never, minutes));
+            fact("below 10 cm after", accuracy.convergence_min.map_or_else(never, minutes));
         }
         facts.extend(self.smoothed.iter().flat_map(SmoothedReport::facts));
         facts

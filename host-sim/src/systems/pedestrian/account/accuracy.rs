@@ -112,6 +112,7 @@ mod tests {
             heading_change_rad: 0.0,
             unseen_s: 0.0,
             bridged_rad: 0.0,
+            gravity_off: 0.0,
             sigma_m: [0.0; 3],
         };
         Walk {

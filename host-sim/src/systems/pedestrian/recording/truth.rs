@@ -5,21 +5,22 @@ use std::path::Path;
 use kestirim_replay::pedestrian::Footprint;
 
 use super::log::Log;
-use crate::Error;
-use crate::table;
+use crate::{Error, output, table};
 
 /// How far beyond the ends of a log a footprint may lie, µs: a log that was averaged or rewritten
 /// in milliseconds ends a few samples early, while the foot stands.
 const SLACK_US: u64 = 100_000;
 
 /// Reads footprints: CSV with columns `t,x,y` (s, m); others, such as `sample_index`, are ignored.
-/// They are joined to the log by `t`.
+/// They are joined to the log by `t`. Those beyond its ends are left out, with a warning: the log was cut.
 ///
 /// # Errors
-/// The file, the line, and what was expected there; also if `t` lies beyond the `log`, which then
+/// The file, the line, and what was expected there; also if fewer than two are of the `log`, which then
 /// belongs to another walk.
 pub fn read(path: &Path, log: &Log) -> Result<Vec<Footprint>, Error> {
     let mut footprints: Vec<Footprint> = Vec::new();
+    let mut beyond = 0_usize;
+    let [start, end] = [log.start_us(), log.end_us()].map(|us| us as f64 * 1e-6);
     table::read(
         path,
         "footprints",
@@ -32,11 +33,8 @@ pub fn read(path: &Path, log: &Log) -> Result<Vec<Footprint>, Error> {
                 logged.contains(time_us)
             };
             let Some(time_us) = u64::try_from(time_us).ok().filter(within) else {
-                let [start, end] = [log.start_us(), log.end_us()].map(|us| us as f64 * 1e-6);
-                let found = time_us as f64 * 1e-6;
-                return Err(row.line.error(format!(
-                    "expected a time within the log, {start:.3} to {end:.3} s, found {found:.3} s"
-                )));
+                beyond += 1;
+                return Ok(());
             };
             if footprints.last().is_some_and(|last| time_us < last.time_us) {
                 return Err(row.line.error(
@@ -48,8 +46,16 @@ pub fn read(path: &Path, log: &Log) -> Result<Vec<Footprint>, Error> {
         },
     )?;
     if footprints.len() < 2 {
-        let problem = "expected at least two footprints".to_owned();
+        let problem = format!(
+            "expected at least two footprints within the log, {start:.3} to {end:.3} s, found {} and {beyond} beyond it",
+            footprints.len()
+        );
         return Err(Error::File { path: path.to_path_buf(), problem });
+    }
+    if beyond > 0 {
+        let sentence =
+            format!("footprints beyond the log, {start:.1} to {end:.1} s, are left out: {beyond}");
+        output::warn_of(path, &[sentence]);
     }
     Ok(footprints)
 }
@@ -72,6 +78,9 @@ mod tests {
     fn footprints_are_read() {
         let footprints = read_text("sample_index,t,x,y\n0,0.5,1,2\n9,2.05,3,4\n").unwrap();
         assert_eq!(footprints[1], Footprint { time_us: 2_050_000, position: [3.0, 4.0] });
+        // Of a log that was cut.
+        let cut = read_text("t,x,y\n0.5,1,2\n1,3,4\n3,9,9\n").unwrap();
+        assert_eq!(cut.len(), 2);
     }
 
     #[test]
@@ -79,9 +88,12 @@ mod tests {
         for (text, expected) in [
             ("", "found an empty file"),
             ("t,x\n", "line 1: expected a header with a column y"),
-            ("t,x,y\n0,0,0\n", "at least two footprints"),
-            ("t,x,y\n0,0,0\n3,0,0\n", "line 3: expected a time within the log, 0.000 to 2.000 s"),
-            ("t,x,y\n-1,0,0\n", "line 2: expected a time within the log"),
+            (
+                "t,x,y\n0,0,0\n",
+                "at least two footprints within the log, 0.000 to 2.000 s, found 1 and 0 beyond",
+            ),
+            ("t,x,y\n0,0,0\n3,0,0\n", "found 1 and 1 beyond it"),
+            ("t,x,y\n-1,0,0\n-0.5,0,0\n", "found 0 and 2 beyond it"),
             ("t,x,y\n1,0,0\n0,0,0\n", "line 3: expected a time not before"),
             ("t,x,y\n1,0,zero\n", "line 2: expected a finite number in column y"),
             ("t,x,y\n1,0,1e9\n", "line 2: expected a position in metres"),

@@ -12,6 +12,12 @@ use crate::{Error, output};
 /// # Errors
 /// The file, the line, and what was expected there.
 pub fn read(path: &Path) -> Result<Model, Error> {
+    if !path.exists() {
+        return Err(Error::Usage(format!(
+            "--model: expected P1, P2, P3 or a file, found {:?}",
+            path.display().to_string()
+        )));
+    }
     let file = TextFile::read(path)?;
     let expected = "a JSON object with A, B and perhaps C, outputs, trim and h, or with airframe and airspeed, or with a grid";
     let (contents, unused) = file.json_with_unused::<ModelFile>(expected)?;
