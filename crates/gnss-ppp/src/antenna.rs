@@ -68,7 +68,7 @@ impl Pattern<'_> {
         self.receiver_range_along(direction, &direction.local())
     }
 
-    /// The same where the unit vector to the east, north and up is known.
+    /// The same where the unit vector of this direction to the east, north and up is known.
     pub(crate) fn receiver_range_along(&self, direction: Direction, local: &Vector3<f64>) -> f64 {
         let [north, east, up] = self.offset;
         let nearer = local.dot(&Vector3::new(east, north, up));

@@ -1,9 +1,12 @@
-//! Sines and cosines, all of one function: those of each alone would take 2.4 kB of flash beside it.
+//! Sines and cosines of angles in rad, all through `sincos`: `sin` and `cos` of their own would add 2.4 kB of flash to the image of a
+//! positioning filter.
 
+/// Sine of an angle, rad.
 pub(crate) fn sin(angle: f64) -> f64 {
     libm::sincos(angle).0
 }
 
+/// Cosine of an angle, rad.
 pub(crate) fn cos(angle: f64) -> f64 {
     libm::sincos(angle).1
 }
@@ -16,8 +19,10 @@ pub(crate) struct Turn {
 }
 
 impl Turn {
+    /// Of no angle.
     pub(crate) const NONE: Self = Self { sine: 0.0, cosine: 1.0 };
 
+    /// Of an angle, rad.
     pub(crate) fn of(angle: f64) -> Self {
         let (sine, cosine) = libm::sincos(angle);
         Self { sine, cosine }
@@ -32,7 +37,7 @@ impl Turn {
         }
     }
 
-    /// Of a sum of multiples of angles, each a small number: faster than a sine of the sum.
+    /// Of a sum of multiples of as many angles, each multiple a small number: faster than a sine of the sum.
     #[inline(never)] // Wanted at several places, once in flash.
     pub(crate) fn sum(multiples: &[i8], angles: &[Self]) -> Self {
         let mut sum = Self::NONE;

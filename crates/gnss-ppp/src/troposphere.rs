@@ -132,7 +132,7 @@ fn in_troposphere(height: f64) -> f64 {
 }
 
 /// What a gradient of the troposphere to the north and one to the east, m, add to a range along a unit vector to the east, north
-/// and up: ∂P/∂G, by Chen and Herring (1997), with the 0.0032 of the total delay.
+/// and up: ∂P/∂G, by Chen and Herring (1997), with C = 0.0032, their value for the total delay. Not a number of no direction.
 pub fn gradient_mapping(local: &Vector3<f64>) -> [f64; 2] {
     let [east, north, up] = *local.as_array();
     let total = up * up + 0.0032 * libm::sqrt(east * east + north * north);

@@ -118,9 +118,9 @@ impl<T: Scalar> Alignment<T> {
         &self.accelerometer_bias
     }
 
-    /// By what share of itself gravity at rest was off.
+    /// Relative error of gravity at rest, with its standard deviation: that of the class, if it was never seen.
     pub(crate) fn gravity_off(&self) -> T {
-        (self.gravity - T::ONE).abs()
+        (self.gravity - T::ONE).hypot(self.gravity_variance.sqrt())
     }
 
     /// Keeps what was learnt and forgets the stream, to begin it again.

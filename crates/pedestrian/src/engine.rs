@@ -24,7 +24,7 @@ pub(crate) struct Engine<T: Scalar, N> {
     was_stance: bool,
     /// By how much the body turned in the step before (rad); zero after a gap, in which that is not known.
     turn: SVector<T, 3>,
-    /// By how much the foot was put elsewhere since the last stride, where it landed (m).
+    /// The farthest that a landing since the last stride moved the foot (m).
     moved: T,
     /// A swing ended with a velocity that only a lost tilt explains; a calm stance will level the foot.
     is_tilted: bool,
@@ -196,7 +196,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                         &step.angular_rate,
                         self.config.contact_height,
                     );
-                    let before = navigator.position();
+                    let landed = navigator.position();
                     navigator.zero_velocity(&ZeroVelocity {
                         velocity,
                         statistic: verdict.statistic,
@@ -204,8 +204,8 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                         landing,
                     });
                     if landing {
-                        let [x, y, _] = *(navigator.position() - before).as_array();
-                        self.moved += x.hypot(y);
+                        let [x, y, _] = *(navigator.position() - landed).as_array();
+                        self.moved = self.moved.max(x.hypot(y));
                     }
                 }
             }

@@ -27,8 +27,8 @@ pub struct Warnings {
     /// again ([`Config::levels`](crate::Config::levels)), but the turn of that moment is not known.
     pub tilt_lost: bool,
     /// Stride by stride too large a velocity is left over: the gyroscope is clipped, its scale or zero has changed, it
-    /// comes late, or the clock runs wrong. Or the foot is put elsewhere by a quarter of its strides and more: it shuffles, and is taken to
-    /// stand while it moves.
+    /// comes late, or the clock runs wrong. Or the foot jumps by a quarter of its strides or more where they end: it shuffles, or climbs a
+    /// ladder, and is taken to stand while it moves.
     pub landings_implausible: bool,
     /// Samples are missing: more than 60 ms at once, or more than 40 ms and three times the step before.
     pub gaps: bool,
@@ -62,7 +62,7 @@ pub(crate) struct Health<T: Scalar> {
     force: Repeats<T>,
     rate: Repeats<T>,
     bad_landings: u8,
-    /// By how many more strides than not the foot was put elsewhere by a large share of them where they ended.
+    /// Strides whose end was moved by a large share of them, less those whose end was not.
     misplaced: u8,
     /// Smoothed sizes of what is left of the velocity when a swing ends: horizontal and vertical (m/s, earth).
     left_over: [T; 2],
@@ -113,10 +113,10 @@ impl<T: Scalar> Health<T> {
     /// The same upwards.
     const MOST_UPWARDS: f64 = 0.5;
 
-    /// Where a stride ends, the foot is put elsewhere by less than this share of it: on 43 recorded walks by 0.12 at the most in the median.
-    /// Where a shuffling foot is taken to stand while it moves, by 0.6.
+    /// Where a stride ends, its landing moves the foot by less than this share of the stride. Medians of 43 recorded walks are 0.12 at the
+    /// most; that of a shuffling foot, which is taken to stand while it moves, 0.6.
     const MISPLACED_SHARE: f64 = 0.25;
-    /// It is so of most strides, if of so many more than not: on the recorded walks of 4 at the most, but for a foot on a ladder.
+    /// So many more strides with such a jump than without are a fault: recorded walks reach 4, but for a foot on a ladder.
     const MISPLACED: u8 = 6;
 
     pub(crate) fn new() -> Self {
@@ -189,7 +189,7 @@ impl<T: Scalar> Health<T> {
         is_bad
     }
 
-    /// A stride of this length ended, and where it did the foot was put elsewhere by so much (m).
+    /// A stride of this length ended, and its landing moved the foot by so much (m).
     pub(crate) fn stride(&mut self, length: T, moved: T) {
         self.misplaced = if moved > length * T::from_f64(Self::MISPLACED_SHARE) {
             self.misplaced.saturating_add(1)

@@ -29,8 +29,8 @@ pub struct Stride<T: Scalar> {
     pub unseen: T,
     /// By how much the body turned beyond the end of its gyroscope's range on the way, as it was bridged (rad).
     pub bridged: T,
-    /// By what share of itself gravity at rest was off so far: of a scale of the accelerometer, by which strides are wrong, too, or of a
-    /// zero.
+    /// Relative error of gravity at rest so far, with its standard deviation: of the accelerometer's scale, which makes strides wrong, too, or
+    /// of its zero.
     pub gravity_off: T,
 }
 

@@ -35,7 +35,7 @@ pub struct PathUncertainty<T: Scalar> {
     unseen: T,
     /// What a standard deviation of the heading's rate moves the position by (m, earth: x, y).
     turned: SVector<T, 2>,
-    /// Standard deviation of the scale of all strides that gravity at rest shows.
+    /// Standard deviation of the scale of all strides.
     scale: T,
     /// How many there were: a number, since a conversion would link double precision.
     strides: T,
@@ -52,7 +52,7 @@ impl<T: Scalar> PathUncertainty<T> {
     pub const UNSEEN_RATE: f64 = 1.5;
     /// … and its share of a turn beyond the gyroscope's range, as it was bridged.
     pub const BRIDGED_SHARE: f64 = 0.02;
-    /// What gravity at rest is off by is to this share the scale of all strides, else a zero along it.
+    /// This share of the error of gravity at rest is taken for a scale of all strides; the rest is a zero.
     pub const SCALE_SHARE: f64 = 0.5;
     /// Standard deviation of a heading that may be any (rad).
     pub const LOST_HEADING: f64 = 1.8;
@@ -61,7 +61,22 @@ impl<T: Scalar> PathUncertainty<T> {
     pub fn new(sensor: SensorClass) -> Self {
         let (position, turned) = (SVector::zeros(), SVector::zeros());
         let zero = T::ZERO;
-        Self { sensor, position, heading: zero, unseen: zero, turned, scale: zero, strides: zero }
+        Self {
+            sensor,
+            position,
+            heading: zero,
+            unseen: zero,
+            turned,
+            scale: Self::scale(sensor, zero),
+            strides: zero,
+        }
+    }
+
+    /// Standard deviation of the scale of all strides, where gravity at rest is off by this share of itself
+    /// ([`Stride::gravity_off`]).
+    #[inline] // So that the constants fold: without that, double precision is linked.
+    pub fn scale(sensor: SensorClass, gravity_off: T) -> T {
+        sensor.stride_scale::<T>().hypot(gravity_off * T::from_f64(Self::SCALE_SHARE))
     }
 
     /// Takes the next stride.
@@ -75,7 +90,7 @@ impl<T: Scalar> PathUncertainty<T> {
         self.unseen = self.unseen.hypot(stride.unseen * T::from_f64(Self::UNSEEN_SPEED));
         self.turned += SVector::from([-dy * self.heading, dx * self.heading]);
         self.position = stride.position;
-        self.scale = stride.gravity_off * T::from_f64(Self::SCALE_SHARE);
+        self.scale = Self::scale(self.sensor, stride.gravity_off);
         self.strides += T::ONE;
     }
 
@@ -84,10 +99,9 @@ impl<T: Scalar> PathUncertainty<T> {
         // A root of a sum by halves: the squares of hundreds of metres leave a fixed-point number's range.
         let steps = (self.strides + T::ONE).sqrt();
         let (own, height) = (T::from_f64(Self::FOOTPRINT), T::from_f64(Self::HEIGHT));
-        let scale = self.sensor.stride_scale::<T>().hypot(self.scale);
         let ([x, y, _], [along, across]) = (*self.position.as_array(), *self.turned.as_array());
         let own = (own * steps).hypot(self.unseen);
-        let of_axis = |position: T, turned: T| (position * scale).hypot(turned).hypot(own);
+        let of_axis = |position: T, turned: T| (position * self.scale).hypot(turned).hypot(own);
         let drifted = (self.strides * self.sensor.height_drift::<T>()).hypot(self.unseen);
         SVector::from([of_axis(x, along), of_axis(y, across), (height * steps).hypot(drifted)])
     }

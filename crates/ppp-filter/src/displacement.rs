@@ -3,20 +3,21 @@
 use crate::least_squares::Step;
 use nalgebra::Vector3;
 
-/// What is not known of the place and of the clock, which codes tell to metres, m².
+/// Variance of place and clock before the phases are used, m²: the codes tell both to metres.
 const UNKNOWN: f64 = 1e6;
 /// Nothing is left out.
 const NONE: [usize; 2] = [usize::MAX; 2];
-/// Fewer satellites do not show whether their changes agree.
-const FEWEST: usize = 6;
-/// A receiver has moved that is farther from where it was than so many standard deviations, by the noise that the changes show
-/// themselves: on four clean days of three stations none is farther than 6.6.
+/// Fewer satellites do not show, without two of them, whether their changes agree.
+const FEWEST: usize = 8;
+/// A receiver has moved if it is more than so many standard deviations from where it was. They follow from the noise of its own phases: on
+/// four clean days of three stations none came beyond 6.6.
 const FARTHEST: f64 = 10.0;
 /// The same by the changes of all satellites but any two.
 const STILL_FAR: f64 = 5.0;
-/// Changes that differ from a motion by more, in their variances, are slips.
+/// Changes whose mean square about a motion is larger, in their variances, are slips. In one epoch noise counts as no more than so
+/// many times what it was.
 const MISFIT: f64 = 9.0;
-/// What an epoch counts for in the noise of the changes.
+/// Weight of one epoch in the mean noise.
 const SHARE: f64 = 0.03;
 /// The noise is never less than this part of the variances said.
 const LEAST: f64 = 0.02;
@@ -51,19 +52,21 @@ impl Displacement {
     /// and a motion (time-differenced carrier phases; van Graas and Soloviev 2004).
     #[inline(never)] // Of receivers at rest, once an epoch.
     pub(crate) fn of(&mut self, changes: &[Change]) -> Option<Vector3<f64>> {
-        let freedom = changes.len().checked_sub(1).filter(|others| *others > FEWEST)?;
+        let count = changes.len();
+        if count < FEWEST {
+            return None;
+        }
         let unrest = unrest(changes, NONE);
         let noise = self.noise.max(LEAST);
-        let mut seen = unrest / freedom as f64;
+        let mut seen = unrest / (count - 1) as f64;
         let mut moved = None;
-        // No motion explains more than there is, and at rest there is little.
+        // A quick look first: at rest the changes are too small for any motion.
         if unrest > FARTHEST * FARTHEST * noise
-            && let Some(all) = Motion::beyond(FARTHEST, changes, NONE, noise)
+            && let Some(all) = Fit::beyond(FARTHEST, changes, NONE, noise)
         {
-            let count = changes.len();
             let is_seen_without = |first: usize| {
                 let mut seconds = first..count;
-                let beyond = |left_out| Motion::beyond(STILL_FAR, changes, left_out, noise);
+                let beyond = |left_out| Fit::beyond(STILL_FAR, changes, left_out, noise);
                 seconds.all(|second| beyond([first, second]).is_some())
             };
             if (0..count).all(is_seen_without) {
@@ -72,7 +75,7 @@ impl Displacement {
                 moved = Some(all.step);
             }
         }
-        self.noise += SHARE * (seen.min(MISFIT) - self.noise);
+        self.noise += SHARE * (seen.min(MISFIT * noise) - self.noise);
         moved
     }
 }
@@ -100,16 +103,15 @@ fn unrest(changes: &[Change], left_out: [usize; 2]) -> f64 {
 
 /// A motion that explains changes.
 #[derive(Clone, Copy, Debug)]
-struct Motion {
+struct Fit {
     /// Where, m.
     step: Vector3<f64>,
     /// Mean square of what is left of the changes, in their variances.
     misfit: f64,
 }
 
-impl Motion {
-    /// Of all changes but two, if it is farther than so many deviations, where this is the noise of changes before, and if they are
-    /// not too few.
+impl Fit {
+    /// The motion that fits all changes but two, if it is beyond so many deviations; `noise` is that of the epochs before.
     #[inline(never)] // Wanted at two places, once in flash.
     fn beyond(
         deviations: f64,
@@ -123,10 +125,7 @@ impl Motion {
             left += moved.take_in(&change.sight, change.phase, change.variance).ok()?;
             count = count.saturating_add(1);
         }
-        if usize::from(count) < FEWEST {
-            return None;
-        }
-        let misfit = left / f64::from(count - 4);
+        let misfit = left / f64::from(count.saturating_sub(4));
         // What it explains beside the clock: its square, in its variances.
         let square = unrest(changes, left_out) - left;
         let is_beyond = square > deviations * deviations * misfit.max(noise) && misfit < MISFIT;

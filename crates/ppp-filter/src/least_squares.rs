@@ -15,8 +15,8 @@ impl Step {
         Self(Gaussian::new(SVector::zeros(), Covariance::from_variances(&[variance; 4])))
     }
 
-    /// Takes in by how much the range along a line of sight is longer than supposed, m. Returned is the square of by how much it is
-    /// beside those before, in its variances: their sum is that of all residuals, beside what was known.
+    /// Takes in how much longer than supposed the range along a line of sight is, m. Returns the square of what the earlier ones did not
+    /// predict, in its variance: their sum is that of all residuals.
     #[inline(never)] // Wanted at two places, once in flash.
     pub(crate) fn take_in(
         &mut self,

@@ -33,10 +33,13 @@ pub(crate) struct PhaseMonitor {
     rejected: u8,
     /// Whether that began with a jump.
     jumped: bool,
+    /// Whether it was not observed in the last epoch.
+    absent: bool,
 }
 
 impl PhaseMonitor {
-    pub(crate) const NEW: Self = Self { noise: 1.0, residual: 0.0, rejected: 0, jumped: false };
+    pub(crate) const NEW: Self =
+        Self { noise: 1.0, residual: 0.0, rejected: 0, jumped: false, absent: false };
 
     /// Factor of the variance.
     pub(crate) fn noise(&self) -> f64 {
@@ -55,9 +58,14 @@ impl PhaseMonitor {
         self.rejected > 0
     }
 
-    /// Residual when it was last observed, m, if it was used then.
+    /// Residual of the last epoch, m, if it was observed in it and not rejected.
     pub(crate) fn residual(&self) -> Option<f64> {
-        (self.rejected == 0).then_some(self.residual)
+        (self.rejected == 0 && !self.absent).then_some(self.residual)
+    }
+
+    /// An epoch has come; until an update tells, it is one without this phase.
+    pub(crate) fn miss(&mut self) {
+        self.absent = true;
     }
 
     /// The ambiguity begins anew.
@@ -74,6 +82,7 @@ impl PhaseMonitor {
         common: f64,
         motion: Motion,
     ) {
+        self.absent = false;
         let (own, clock) = (line.phase_variance * line.phase_noise, line.clock_variance);
         if phase.weight > LEAST_WEIGHT {
             (self.rejected, self.jumped, self.residual) = (0, false, phase.residual);

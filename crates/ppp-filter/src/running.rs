@@ -42,10 +42,12 @@ const RELINEARISATIONS: usize = 5;
 /// The model is one of the ground: what is found elsewhere is none, distances from the Earth's centre, m.
 pub(crate) const GROUND: core::ops::Range<f64> = 6.3e6..6.5e6;
 
-/// By so much at the most the direction to a satellite turns, rad/s.
-const SKY_TURNS: f64 = 1.5e-4;
-/// A receiver that was seen to move may be so many times as far away: what is known of it before pulls it back by little.
+/// The fastest that the direction to a satellite turns, rad/s: one of GLONASS, overhead.
+const SKY_TURNS: f64 = 2e-4;
+/// A receiver that was seen to move gets so many times its step as standard deviation, so that the old place hardly pulls it back.
 const ANYWHERE: f64 = 5.0;
+/// Phases of epochs that are farther apart, in the shortest time between two, are not compared: delays change, too.
+const FARTHEST_APART: f64 = 1.5;
 
 /// Median of the squares of standard normal numbers.
 const MEDIAN_OF_SQUARES: f64 = 0.455;
@@ -219,9 +221,12 @@ impl<const N: usize> Running<N> {
         Ok(self.solution(&site, &lines, &decisions, config))
     }
 
-    /// Lets a receiver that is said to rest be elsewhere, if the phases' changes show that it is: they keep their ambiguities, which
-    /// tell where.
+    /// If the phases show that a receiver that is said to rest has moved, lets it be elsewhere. The ambiguities are kept: they tell where
+    /// it is now.
     fn follow_displacement(&mut self, lines: &Lines<'_, '_, N>) -> Result<(), Error> {
+        if self.interval.is_none_or(|it| self.rest.elapsed() > FARTHEST_APART * it) {
+            return Ok(());
+        }
         // While a place is not known, the sky that turns changes phases, too.
         let turned = self.deviation() * SKY_TURNS * self.rest.elapsed();
         let change = |line: &Line| {
@@ -345,6 +350,7 @@ impl<const N: usize> Running<N> {
         let squares: Vec<f64, N> = collected(judged.map(|it| it.standardised * it.standardised));
         let median = median(&squares).unwrap_or_default();
         let common = (median / MEDIAN_OF_SQUARES).max(1.0);
+        self.channels.iter_mut().flatten().for_each(|channel| channel.monitor.miss());
         for ((_, line), [_, phase]) in lines.iter().zip(decisions) {
             if let Some(Some(channel)) = self.channels.get_mut(line.state) {
                 channel.monitor.update(phase, line, common, config.motion);

@@ -58,8 +58,9 @@ pub enum Contradiction {
     /// What is left of the observations is far beyond their noise: 2.6 times for ten epochs, or 2.8 times.
     Residuals,
     /// A receiver at rest is more than four standard deviations from where it was found before, or any receiver leapt
-    /// farther than ten standard deviations of its prediction, one that moves even if it had gone on as before; or the phases of one at
-    /// rest changed from one epoch to the next as if it had been moved by ten standard deviations.
+    /// farther than ten standard deviations of its prediction, one that moves even if it had gone on as before. Or the phases of at least
+    /// eight satellites of one at rest changed from one epoch to the next as those of a receiver that was moved by ten standard
+    /// deviations.
     Motion,
 }
 

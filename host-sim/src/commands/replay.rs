@@ -25,18 +25,16 @@ fn of(system: &dyn AnySystem) -> Command {
     let outputs = system.outputs().iter().map(|output| file(output.name, "OUT.csv", output.help));
     let mcap = "Write sensors, estimate and truth as MCAP, for viewers such as Foxglove and Rerun";
     let out = "The table of --logs, of the format that its ending says";
-    let needed = system.files().iter().filter(|field| field.required);
-    let needed: Vec<_> = needed.map(|field| format!("--{}", field.name)).collect();
+    let required: Vec<_> =
+        system.files().iter().filter(|field| field.required).map(|field| field.name).collect();
     let logs = format!(
-        "Every recording of a pattern such as 'dir/**/*.txt', in place of {}{}; in other files' names {{dir}} and {{stem}} stand for its \
-         folder and its name without ending",
-        if needed.len() > 1 { "that of these which is not named: " } else { "" },
-        needed.join(", ")
+        "Run every recording that matches a pattern such as 'dir/**/*.txt', in place of --{}, the first of them that is not given; in other \
+         files' names {{dir}} and {{stem}} stand for its folder and its name without ending",
+        required.join(" or --")
     );
     let logs = Arg::new("logs").long("logs").value_name("PATTERN").help(logs).requires("out");
     let names = system.outputs().iter().map(|it| it.name).chain(["mcap", "json", "synthetic"]);
-    let required = system.files().iter().filter(|field| field.required).map(|field| field.name);
-    let command = required.fold(recorded(system), |command, name| {
+    let command = required.into_iter().fold(recorded(system), |command, name| {
         command.mut_arg(name, |arg| arg.required_unless_present("logs"))
     });
     command

@@ -84,7 +84,7 @@ fn a_receiver_is_found() {
     assert_eq!(fs::read_dir(desk.path(".")).expect("the folder").count(), 5);
 
     let table = host_sim(&with(&files, &more));
-    assert!(text(&table.stdout).contains("convergence"));
+    assert!(text(&table.stdout).contains("below 10 cm after"));
     assert!(text(&table.stderr).contains("warning: the load of the oceans"));
 }
 

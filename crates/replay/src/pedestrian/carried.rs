@@ -22,24 +22,32 @@ const RIDE: f64 = 60.0;
 /// … or else so many.
 const ONE_WAY: usize = 4;
 
-/// … and no force across gravity by less than this while its foot does not turn, m/s²: a vehicle begins with as much, …
+/// A vehicle that begins to move pushes the foot sideways by at least this, m/s², …
 const ACROSS: f64 = 0.4;
-/// … beside what it mostly is this long before and after, s.
-const AROUND: f64 = 3.0;
+/// … beside the median of so long before, s.
+const BEFORE: f64 = 3.0;
+/// After so long without a sample it is not known how the foot turned, s.
+const GAP: f64 = 0.06;
 
 /// The index of the first sample at which a standing foot is carried: for a while, the force is longer or shorter than it mostly
-/// is in that stand, or it leans, and the gyroscope did not see the foot turn.
+/// is in that stand, or it leans although the gyroscope saw no turn.
 pub(super) fn carried(samples: &[Sample]) -> Option<usize> {
+    let stands = |it: &Sample| norm(&it.angular_rate) < QUIET;
+    // Of all stands: in one of them the foot may turn slowly.
+    let usual = |axis: usize| {
+        let rates = samples.iter().filter(|it| stands(it)).map(|it| it.angular_rate[axis]);
+        median(&rates.collect::<Vec<_>>())
+    };
+    let zero = Vector3::from([0, 1, 2].map(usual));
     let mut begin = 0;
-    for index in 0..=samples.len() {
-        let stands = samples.get(index).is_some_and(|it| norm(&it.angular_rate) < QUIET);
-        if stands {
-            continue;
-        }
-        if let Some(found) = in_stand(&samples[begin..index]) {
+    let seconds = |a: &Sample, b: &Sample| (b.time_us - a.time_us) as f64 * 1e-6;
+    for stand in samples.chunk_by(|a, b| stands(a) == stands(b) && seconds(a, b) < GAP) {
+        if stands(&stand[0])
+            && let Some(found) = in_stand(stand, &zero)
+        {
             return Some(begin + found);
         }
-        begin = index + 1;
+        begin += stand.len();
     }
     None
 }
@@ -50,25 +58,22 @@ struct Window {
     at: usize,
     /// As long as it is on average, m/s².
     length: f64,
-    /// As the foot stood at the beginning of the stand, m/s².
+    /// In the axes that the foot had when the stand began, m/s².
     force: Vector3<f64>,
 }
 
-fn in_stand(samples: &[Sample]) -> Option<usize> {
+fn in_stand(samples: &[Sample], zero: &Vector3<f64>) -> Option<usize> {
     let (first, last) = (samples.first()?, samples.last()?);
     if (last.time_us - first.time_us) as f64 * 1e-6 < LONG {
         return None;
     }
-    let windows = windows(samples);
+    let windows = windows(samples, zero);
     [up_or_down(samples, &windows), across(&windows)].into_iter().flatten().min()
 }
 
-fn windows(samples: &[Sample]) -> Vec<Window> {
+/// With the gyroscope's `zero`, rad/s.
+fn windows(samples: &[Sample], zero: &Vector3<f64>) -> Vec<Window> {
     let begin_us = samples[0].time_us;
-    // Who stands turns by nothing mostly.
-    let usual =
-        |axis: usize| median(&samples.iter().map(|it| it.angular_rate[axis]).collect::<Vec<_>>());
-    let zero = Vector3::from([0, 1, 2].map(usual));
     let mut turned = UnitQuaternion::identity();
     let mut before_us = begin_us;
     let mut at = 0;
@@ -114,13 +119,12 @@ fn up_or_down(samples: &[Sample], windows: &[Window]) -> Option<usize> {
     both.or_else(|| first(1.0, ONE_WAY)).or_else(|| first(-1.0, ONE_WAY))
 }
 
-/// Where the force leans for a while as it does not before and after, by the gyroscope's account of the foot.
+/// Where the force leans for a while as it did not before, by the gyroscope's account of the foot.
 fn across(windows: &[Window]) -> Option<usize> {
-    let around = (AROUND / WINDOW) as usize;
+    let before = (BEFORE / WINDOW) as usize;
     let leans = |at: usize| {
-        let [begin, end] = [at.saturating_sub(around), (at + around + 1).min(windows.len())];
         let usual = [0, 1, 2].map(|axis| {
-            let values = windows[begin..end].iter().map(|it| it.force[axis]);
+            let values = windows[at - before..at].iter().map(|it| it.force[axis]);
             median(&values.collect::<Vec<_>>())
         });
         let usual = Vector3::from(usual);
@@ -129,9 +133,9 @@ fn across(windows: &[Window]) -> Option<usize> {
         let across = (off - up * off.dot(&up)).norm();
         (ACROSS..MOST).contains(&across)
     };
-    let leaning: Vec<bool> = (0..windows.len()).map(leans).collect();
+    let leaning: Vec<bool> = (before..windows.len()).map(leans).collect();
     let run = leaning.windows(BOTH_WAYS).position(|run| run.iter().all(|it| *it))?;
-    Some(windows[run].at)
+    Some(windows[before + run].at)
 }
 
 fn norm([x, y, z]: &[f64; 3]) -> f64 {

@@ -29,7 +29,7 @@ impl PathErrors {
         let off = walk.strides.last().map_or(0.0, |stride| stride.gravity_off);
         let mut left = Self {
             rate: class.heading_rate(),
-            scale: class.stride_scale::<f64>().hypot(PathUncertainty::<f64>::SCALE_SHARE * off),
+            scale: PathUncertainty::scale(class, off),
             stride: PathUncertainty::<f64>::FOOTPRINT,
         };
         if let Some(feet) = walk.both_feet {

@@ -70,7 +70,7 @@ pub struct Stride {
     pub unseen_s: f64,
     /// By how much the body turned beyond the end of its gyroscope's range on the way, rad.
     pub bridged_rad: f64,
-    /// By what share of itself gravity at rest was off so far.
+    /// Relative error of gravity at rest so far, with its standard deviation.
     pub gravity_off: f64,
     /// Standard deviations of the position, m.
     pub sigma_m: [f64; 3],

@@ -31,8 +31,8 @@ pub fn sentences(warnings: Warnings) -> Vec<String> {
         ),
         (
             warnings.landings_implausible,
-            "when the foot stands, its computed velocity is too far from zero, stride by stride: it shuffles, the gyroscope is clipped \
-             or late, its scale or zero is wrong (calibrate pedestrian), or the clock runs wrong",
+            "when the foot stands, its computed velocity is too far from zero, stride by stride: it shuffles, the gyroscope is clipped, \
+             late or not calibrated (calibrate pedestrian), or the clock runs wrong",
         ),
         (warnings.gaps, "samples are missing: more than 60 ms at once, or 40 ms and three times the step before"),
         (

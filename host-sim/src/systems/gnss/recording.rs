@@ -25,7 +25,7 @@ pub fn read(files: &Files) -> Result<Recording, Error> {
     if !files.all("sp3").is_empty() {
         files.required("antex")?;
     } else if files.all("nav").is_empty() && !is_stream(obs) {
-        // One that is not there is not asked for more.
+        // If the file is missing, that is said first.
         let path = obs.to_path_buf();
         text::regular(obs).map_err(|source| Error::Read { path, source })?;
         let sentence =

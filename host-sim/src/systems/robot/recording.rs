@@ -114,8 +114,7 @@ impl Recording {
         let is_number = |path: &Path| path.to_str().is_some_and(|it| it.parse::<f64>().is_ok());
         if let Some(path) = height.filter(|path| is_number(path) || !path.exists()) {
             return Err(Error::Usage(format!(
-                "--height: expected metres above the floor, such as 0.6, or a file, found {:?}",
-                path.display().to_string()
+                "--height: expected metres above the floor, such as 0.6, or a file, found {path:?}"
             )));
         }
         let mut recording = Self {

@@ -128,6 +128,7 @@ fn doubts<T: Scalar>() {
     });
     PathUncertainty::add(any(&mut uncertainty), &stride);
     keep(PathUncertainty::standard_deviation(&uncertainty));
+    keep(PathUncertainty::<T>::scale(sensor, number()));
 }
 
 fn turns_back<T: Scalar>() {

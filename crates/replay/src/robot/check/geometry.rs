@@ -53,6 +53,11 @@ const SCALES: [(f64, &str, &str); 5] = [
     (2.0, "doubled", ": they may have been halved twice"),
 ];
 
+/// Ranges near nothing fit any anchors that are close together: a scale that is smaller than this …
+const SMALLEST: f64 = 0.1;
+/// … is one of ranges that are so many times as long as the farthest anchor is from their middle.
+const FAR: f64 = 10.0;
+
 /// Anchors that are no farther from a plane, or a line, than so on average tell hardly more of its two sides than what they measure wrong, m.
 const FLAT_M: f64 = 0.2;
 
@@ -116,7 +121,8 @@ pub(super) fn check(
     };
     let places: Vec<Vector3<f64>> =
         anchors.positions.iter().map(|place| Vector3::from(*place)).collect();
-    let mut moments = moments::at_once(parts);
+    let at_once = moments::at_once(parts);
+    let mut moments = at_once.clone();
     let left = |moments: &[Moment]| {
         Tried { moments, anchors: &places, height }.left(Moment::clone, &places, height)
     };
@@ -125,8 +131,8 @@ pub(super) fn check(
         left(&moments)
     });
     let Some(left) = first else {
-        // Ranges a hundred times as long as the room lead least squares nowhere.
-        return [moments::at_once(parts), moments].iter().find_map(|moments| {
+        // Ranges in millimetres or centimetres are so long that least squares find no place at all.
+        return [at_once, moments].iter().find_map(|moments| {
             let tried = Tried { moments, anchors: &places, height };
             let (with, (how, what)) = tried.another_unit()?;
             (with < EXPLAINED_M).then(|| {
@@ -240,9 +246,9 @@ impl Tried<'_> {
             let as_well = swapped.iter().skip(1).find(|(with, _)| *with < best + AS_WELL_M);
             let remedy = match as_well {
                 None => format!("with {} swapped {agree}", of_both([*a, *b])),
-                // Both rooms are each other's mirror image, in which distances are the same.
+                // In a rectangle both make rooms that are each other's mirror image, in which distances are the same.
                 Some((_, other)) => format!(
-                    "with {} swapped {agree}, with {} as well: only a plan of the room tells which, the other is its mirror image",
+                    "with {} swapped {agree}, with {} as well: look at a plan, one room may mirror the other",
                     of_both([*a, *b]),
                     of_both(*other)
                 ),
@@ -293,11 +299,17 @@ impl Tried<'_> {
 
     /// As if the ranges were in the unit that fits best: how that is said, and what to do about it.
     fn another_unit(&self) -> Option<(f64, (&'static str, &'static str))> {
-        let each = SCALES.into_iter().filter_map(|(by, how, what)| {
-            let change =
-                |moment: &Moment| moment.iter().map(|(a, range)| (*a, range * by)).collect();
-            Some((self.left(change, self.anchors, self.height)?, (how, what)))
-        });
+        let ranges: Vec<f64> = self.moments.iter().flatten().map(|(_, range)| *range).collect();
+        let centre = self.anchors.iter().sum::<Vector3<f64>>() / self.anchors.len().max(1) as f64;
+        let spread = self.anchors.iter().map(|it| (it - centre).norm()).fold(0.0, f64::max);
+        let is_far = median(&ranges) > FAR * spread;
+        let each = SCALES.into_iter().filter(|(by, ..)| is_far || *by > SMALLEST).filter_map(
+            |(by, how, what)| {
+                let change =
+                    |moment: &Moment| moment.iter().map(|(a, range)| (*a, range * by)).collect();
+                Some((self.left(change, self.anchors, self.height)?, (how, what)))
+            },
+        );
         each.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
@@ -445,7 +457,7 @@ mod tests {
             let told = reason(|metres| metres + excess, &corners);
             assert_eq!(told, Some(Reason::NotObservable), "{excess} m");
         }
-        for factor in [0.5, 2.0] {
+        for factor in [0.5, 2.0, 100.0, 1000.0] {
             assert_eq!(reason(|metres| factor * metres, &corners), Some(Reason::Units), "{factor}");
         }
     }

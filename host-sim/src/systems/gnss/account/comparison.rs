@@ -28,7 +28,7 @@ impl fmt::Display for Comparison {
         let mut table = output::table();
         let mut header = vec!["filter", "solved"];
         let known = self.filters.iter().any(|report| report.accuracy.is_some());
-        let accuracy = ["final 3-D", "RMS N", "RMS E", "RMS U", "RMS 3-D", "convergence"];
+        let accuracy = ["final 3-D", "RMS N", "RMS E", "RMS U", "RMS 3-D", "below 10 cm after"];
         header.extend(if known { &accuracy[..] } else { &["sd N", "sd E", "sd U"] });
         header.extend(["rejected", "down-weighted", "slips"]);
         table.set_header(header);

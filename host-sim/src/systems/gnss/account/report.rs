@@ -309,7 +309,7 @@ impl Report {
             if let (Some(all), Some(each)) = (accuracy.rms_3d_m, accuracy.rms_enu_m) {
                 fact("RMS after 1 h", format!("{} ({})", millimetres(all), enu(each)));
             }
-            let never = || "never below 10 cm for 15 min".to_owned();
+            let never = || "never for 15 min".to_owned();
             let minutes = |minutes: f64| format!("{minutes:.1} min");
             fact("below 10 cm after", accuracy.convergence_min.map_or_else(never, minutes));
         }

@@ -12,11 +12,11 @@ use crate::{Error, output, table};
 const SLACK_US: u64 = 100_000;
 
 /// Reads footprints: CSV with columns `t,x,y` (s, m); others, such as `sample_index`, are ignored.
-/// They are joined to the log by `t`. Those beyond its ends are left out, with a warning: the log was cut.
+/// They are joined to the log by `t`. Those outside its time are left out, with a warning: a log may have been cut.
 ///
 /// # Errors
-/// The file, the line, and what was expected there; also if fewer than two are of the `log`, which then
-/// belongs to another walk.
+/// The file, the line, and what was expected there; also if fewer than two, or fewer than half, lie within the `log`: it belongs to
+/// another walk.
 pub fn read(path: &Path, log: &Log) -> Result<Vec<Footprint>, Error> {
     let mut footprints: Vec<Footprint> = Vec::new();
     let mut beyond = 0_usize;
@@ -45,16 +45,19 @@ pub fn read(path: &Path, log: &Log) -> Result<Vec<Footprint>, Error> {
             Ok(())
         },
     )?;
-    if footprints.len() < 2 {
+    if footprints.len() < 2.max(beyond) {
         let problem = format!(
-            "expected at least two footprints within the log, {start:.3} to {end:.3} s, found {} and {beyond} beyond it",
-            footprints.len()
+            "expected at least two footprints, and half of them, within the log, {start:.3} to {end:.3} s, found {} of {}",
+            footprints.len(),
+            footprints.len() + beyond
         );
         return Err(Error::File { path: path.to_path_buf(), problem });
     }
     if beyond > 0 {
-        let sentence =
-            format!("footprints beyond the log, {start:.1} to {end:.1} s, are left out: {beyond}");
+        let sentence = format!(
+            "footprints outside the log, {start:.1} to {end:.1} s, are left out: {beyond} of {}",
+            footprints.len() + beyond
+        );
         output::warn_of(path, &[sentence]);
     }
     Ok(footprints)
@@ -90,10 +93,10 @@ mod tests {
             ("t,x\n", "line 1: expected a header with a column y"),
             (
                 "t,x,y\n0,0,0\n",
-                "at least two footprints within the log, 0.000 to 2.000 s, found 1 and 0 beyond",
+                "at least two footprints, and half of them, within the log, 0.000 to 2.000 s, found 1 of 1",
             ),
-            ("t,x,y\n0,0,0\n3,0,0\n", "found 1 and 1 beyond it"),
-            ("t,x,y\n-1,0,0\n-0.5,0,0\n", "found 0 and 2 beyond it"),
+            ("t,x,y\n0,0,0\n3,0,0\n", "found 1 of 2"),
+            ("t,x,y\n-1,0,0\n-0.5,0,0\n", "found 0 of 2"),
             ("t,x,y\n1,0,0\n0,0,0\n", "line 3: expected a time not before"),
             ("t,x,y\n1,0,zero\n", "line 2: expected a finite number in column y"),
             ("t,x,y\n1,0,1e9\n", "line 2: expected a position in metres"),

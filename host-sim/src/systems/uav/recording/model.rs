@@ -10,12 +10,11 @@ use crate::{Error, output};
 /// What is in a file.
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// [`Error::Usage`] if there is no such file; else the file, the line, and what was expected there.
 pub fn read(path: &Path) -> Result<Model, Error> {
     if !path.exists() {
         return Err(Error::Usage(format!(
-            "--model: expected P1, P2, P3 or a file, found {:?}",
-            path.display().to_string()
+            "--model: expected P1, P2, P3 or a file, found {path:?}"
         )));
     }
     let file = TextFile::read(path)?;
