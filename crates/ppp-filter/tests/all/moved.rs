@@ -1,7 +1,8 @@
 //! A receiver that is said to rest, and is knocked.
 
 use crate::filter::{SLOW, error, filter, run};
-use crate::sky::{marker, observe};
+use crate::sky::{START, marker, observe};
+use kestirim_gnss_ppp::Receiver;
 use kestirim_ppp_filter::{Contradiction, Health, Motion};
 use nalgebra::Vector3;
 
@@ -23,6 +24,42 @@ fn it_is_found_where_it_is_then_and_that_is_told() {
             let distance = (solution.position - place).norm();
             assert!(distance < 0.02, "{distance} m after {knock}");
         }
+    }
+}
+
+#[test]
+fn it_is_found_from_the_end_of_the_run_too() {
+    let knock = Vector3::new(0.0, -0.3, 0.2);
+    let mut filter = filter(Motion::Static);
+    for k in (0..=120).rev() {
+        let seconds = 30.0 * f64::from(k);
+        let place = if seconds < KNOCKED { marker() } else { marker() + knock };
+        let observations = observe(seconds, &place);
+        let solution = filter
+            .process_backwards(START.plus(seconds), &Receiver::default(), &observations)
+            .expect("a solution");
+        let told = solution.health == Health::Contradicted(Contradiction::Motion);
+        assert_eq!(told, seconds < KNOCKED, "{seconds} s");
+        if k < 100 {
+            assert!((solution.position - place).norm() < 0.02, "{seconds} s");
+        }
+    }
+}
+
+/// Phases of ten minutes ago say nothing of a motion: delays have changed.
+#[test]
+fn after_a_gap_changes_are_not_looked_at() {
+    let mut filter = filter(Motion::Static);
+    for k in (0..=120).filter(|k| !(60..80).contains(k)) {
+        let seconds = 30.0 * f64::from(k);
+        // In the gap all delays have changed as if it had been knocked.
+        let away = Vector3::new(0.0, 0.0, if k < 80 { 0.0 } else { 0.1 });
+        let observations = observe(seconds, &(marker() + away));
+        let solution = filter
+            .process(START.plus(seconds), &Receiver::default(), &observations)
+            .expect("a solution");
+        let told = solution.health == Health::Contradicted(Contradiction::Motion);
+        assert!(!told || k > 80, "{seconds} s");
     }
 }
 
