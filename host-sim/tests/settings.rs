@@ -132,7 +132,9 @@ fn the_command_line_the_page_and_a_stream_have_the_same_settings() {
             let help = on_line.get_help().map(ToString::to_string).unwrap_or_default();
             let control = setting.control();
             let label = control["label"].as_str().unwrap_or_default();
-            assert!(help.contains(label) && !label.is_empty(), "{name}: {help:?}, {label:?}");
+            // A switch that is on is said to be turned off: "Do not use …" of "Use …".
+            let is_in = |help: &str| help.to_lowercase().contains(&label.to_lowercase());
+            assert!(is_in(&help) && !label.is_empty(), "{name}: {help:?}, {label:?}");
             if let Kind::Choice { of, .. } | Kind::Set { of } = &setting.kind {
                 let names: Vec<_> = of.iter().map(|named| named.name.clone()).collect();
                 let options = control["options"].as_array().expect("options");
@@ -154,7 +156,7 @@ fn the_command_line_the_page_and_a_stream_have_the_same_settings() {
                 // A file of the same name, which a stream has not, may stand beside it in a replay.
                 Some(arg) if setting.in_live => {
                     let in_live = arg.get_help().map(ToString::to_string).unwrap_or_default();
-                    assert!(help.contains(label) && in_live.contains(label), "{name}: {in_live:?}");
+                    assert!(is_in(&help) && is_in(&in_live), "{name}: {in_live:?}");
                     let form = setting.form();
                     let names = arg.get_value_names().unwrap_or_default();
                     let takes = matches!(setting.kind, Kind::Number(_) | Kind::Text { .. });
