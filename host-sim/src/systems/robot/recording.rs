@@ -18,6 +18,7 @@ use crate::Error;
 use crate::random::stream;
 use crate::system::Files;
 use crate::table::{self, Found};
+use crate::text::printable_path;
 
 /// What was recorded.
 #[derive(Debug, Clone, Default)]
@@ -114,7 +115,8 @@ impl Recording {
         let is_number = |path: &Path| path.to_str().is_some_and(|it| it.parse::<f64>().is_ok());
         if let Some(path) = height.filter(|path| is_number(path) || !path.exists()) {
             return Err(Error::Usage(format!(
-                "--height: expected metres above the floor, such as 0.6, or a file, found {path:?}"
+                "--height: expected metres above the floor, such as 0.6, or a file, found {}",
+                printable_path(path)
             )));
         }
         let mut recording = Self {

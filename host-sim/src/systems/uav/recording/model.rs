@@ -4,7 +4,7 @@ use std::path::Path;
 
 use kestirim_replay::uav::{Model, ModelFile};
 
-use crate::text::TextFile;
+use crate::text::{TextFile, printable_path};
 use crate::{Error, output};
 
 /// What is in a file.
@@ -14,7 +14,8 @@ use crate::{Error, output};
 pub fn read(path: &Path) -> Result<Model, Error> {
     if !path.exists() {
         return Err(Error::Usage(format!(
-            "--model: expected P1, P2, P3 or a file, found {path:?}"
+            "--model: expected P1, P2, P3 or a file, found {}",
+            printable_path(path)
         )));
     }
     let file = TextFile::read(path)?;
