@@ -24,7 +24,7 @@ pub(crate) struct Engine<T: Scalar, N> {
     was_stance: bool,
     /// By how much the body turned in the step before (rad); zero after a gap, in which that is not known.
     turn: SVector<T, 3>,
-    /// The farthest that a landing since the last stride moved the foot (m).
+    /// How far landings have moved the foot since the last stride (m).
     moved: T,
     /// A swing ended with a velocity that only a lost tilt explains; a calm stance will level the foot.
     is_tilted: bool,
@@ -36,6 +36,8 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     const CALM: f64 = 0.1;
     /// Rates that are repeated are left out for less than this (s): a longer step is not integrated as a whole.
     const HELD: f64 = 0.15;
+    /// A landing that moves the foot by less is no jump (m): a stance may flicker.
+    const JUMP: f64 = 0.03;
     /// A lost tilt counts as so long without samples (s).
     const UNSEEN: f64 = 0.2;
 
@@ -205,7 +207,10 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                     });
                     if landing {
                         let [x, y, _] = *(navigator.position() - landed).as_array();
-                        self.moved = self.moved.max(x.hypot(y));
+                        let moved = x.hypot(y);
+                        if moved > T::from_f64(Self::JUMP) {
+                            self.moved += moved;
+                        }
                     }
                 }
             }
