@@ -198,14 +198,14 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                         &step.angular_rate,
                         self.config.contact_height,
                     );
-                    let landed = navigator.position();
+                    let landed = landing.then(|| navigator.position());
                     navigator.zero_velocity(&ZeroVelocity {
                         velocity,
                         statistic: verdict.statistic,
                         interval,
                         landing,
                     });
-                    if landing {
+                    if let Some(landed) = landed {
                         let [x, y, _] = *(navigator.position() - landed).as_array();
                         let moved = x.hypot(y);
                         if moved > T::from_f64(Self::JUMP) {

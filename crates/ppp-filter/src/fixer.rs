@@ -147,7 +147,7 @@ impl<const N: usize> AmbiguityFixer<N> {
             if report.code.weight > LEAST_WEIGHT {
                 let phase = running.repaired(observed);
                 let cycles = carriers.melbourne_wuebbena(phase, observed.code) + bias.wide_lane;
-                let sine = report.direction.local().z;
+                let (sine, _) = libm::sincos(report.direction.elevation);
                 wide_lane.take(cycles, wide_lane::variance(filter.config(), carriers, sine));
             }
             *place = Some(wide_lane);

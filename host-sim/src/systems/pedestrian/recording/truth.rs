@@ -45,18 +45,17 @@ pub fn read(path: &Path, log: &Log) -> Result<Vec<Footprint>, Error> {
             Ok(())
         },
     )?;
+    let all = footprints.len() + beyond;
     if footprints.len() < 2.max(beyond) {
         let problem = format!(
-            "expected at least two footprints, and half of them, within the log, {start:.3} to {end:.3} s, found {} of {}",
-            footprints.len(),
-            footprints.len() + beyond
+            "expected at least two footprints, and half of them, within the log, {start:.3} to {end:.3} s, found {} of {all}",
+            footprints.len()
         );
         return Err(Error::File { path: path.to_path_buf(), problem });
     }
     if beyond > 0 {
         let sentence = format!(
-            "footprints outside the log, {start:.1} to {end:.1} s, are left out: {beyond} of {}",
-            footprints.len() + beyond
+            "footprints outside the log, {start:.1} to {end:.1} s, are left out: {beyond} of {all}"
         );
         output::warn_of(path, &[sentence]);
     }

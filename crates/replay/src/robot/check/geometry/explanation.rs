@@ -1,0 +1,250 @@
+//! What would make ranges and anchors agree: one thing changed after the other.
+
+use kestirim_health::Reason;
+use kestirim_uwb_ranging::{Observation, Solver};
+use nalgebra::Vector3;
+
+use super::CONTRADICTION_M;
+use crate::Finding;
+use crate::metrics::median;
+use crate::robot::check::moments::Moment;
+
+/// Fewer say nothing.
+const FEWEST: usize = 12;
+/// Of so many anchors one that stands elsewhere is averaged down, and the others show the clearer that it is the one: from here on, m.
+const MANY: usize = 6;
+const OF_MANY_M: f64 = 0.3;
+/// A change explains it if it leaves so much less, …
+const EXPLAINS: f64 = 3.0;
+/// … and no more than this, m.
+const EXPLAINED_M: f64 = 0.35;
+/// Where walls and people might do as much, it explains it if it leaves so much less: three anchors have but one range to spare, and noise alone leaves less than that.
+const CLEARLY: f64 = 6.0;
+/// The standard deviation that all anchors' common bias may have, m.
+const COMMON_BIAS_M: f64 = 0.5;
+/// A common excess explains as well as a height if it leaves no more than so much more: radios have one more often, m.
+const AS_WELL_M: f64 = 0.05;
+/// Heights that are tried against the one that was said, m.
+const HEIGHTS: [f64; 6] = [-1.5, -1.0, -0.5, 0.5, 1.0, 1.5];
+/// What all ranges may be too long by, beyond what a common bias of half a metre explains, m.
+const EXCESSES: [f64; 4] = [1.0, 1.5, 2.0, 3.0];
+/// What ranges may be instead of metres, and what to do about it. (Yards are as much less as a usual delay of antennas.)
+const SCALES: [(f64, &str, &str); 5] = [
+    (1e-3, "in millimetres", ": --units range=mm"),
+    (1e-2, "in centimetres", ": --units range=cm"),
+    (0.3048, "in feet", ": --units range=ft"),
+    (0.5, "halved", ": they may be those of there and back"),
+    (2.0, "doubled", ": they may have been halved twice"),
+];
+
+/// Ranges near nothing fit any anchors that are close together: a scale that is smaller than this …
+const SMALLEST: f64 = 0.1;
+/// … is one of ranges that are so many times as long as the farthest anchor is from their middle.
+const FAR: f64 = 10.0;
+
+/// Ranges and anchors of which changes are tried.
+pub(super) struct Tried<'a> {
+    pub(super) moments: &'a [Moment],
+    pub(super) anchors: &'a [Vector3<f64>],
+    pub(super) height: Option<f64>,
+}
+
+impl Tried<'_> {
+    /// The median over the moments of what is left, m.
+    pub(super) fn left(
+        &self,
+        change: impl Fn(&Moment) -> Moment,
+        anchors: &[Vector3<f64>],
+        height: Option<f64>,
+    ) -> Option<f64> {
+        let each = self.moments.iter().filter_map(|moment| {
+            let observations = change(moment).into_iter().filter_map(|(anchor, range)| {
+                Some(Observation { anchor: *anchors.get(anchor)?, range, variance: 1.0 })
+            });
+            let observations: Vec<_> = observations.collect();
+            left_over(&observations, height)
+        });
+        let each: Vec<f64> = each.collect();
+        (each.len() >= FEWEST).then(|| median(&each))
+    }
+
+    /// The one change with which ranges and as many anchors as are heard agree, if there is one: the reason, if positions suffer, and
+    /// what is to be done.
+    pub(super) fn explanation(
+        &self,
+        left: f64,
+        heard: usize,
+        height_is_given: bool,
+        names: &[String],
+    ) -> Option<(Option<Reason>, String)> {
+        let is_contradiction = left >= CONTRADICTION_M;
+        let is_of_many = heard >= MANY && left >= OF_MANY_M;
+        let explains = if is_contradiction || is_of_many { EXPLAINS } else { CLEARLY };
+        let explained = |with: f64| (with < EXPLAINED_M && with * explains < left).then_some(with);
+        // Of four anchors three are left without one, and one range to spare; of three anchors there is but one.
+        let is_clear = is_contradiction || self.anchors.len() > 4;
+        if let Some((with, (how, what))) = self.another_unit()
+            && let Some(with) = explained(with)
+        {
+            return Some((Some(Reason::Units), format!("{how} {}{what}", agree(with))));
+        }
+        let swapped: Vec<_> = self
+            .swapped()
+            .into_iter()
+            .filter_map(|(with, pair)| Some((explained(with)?, pair)))
+            .collect();
+        if let Some((best, [a, b])) = swapped.first() {
+            let of_both = |[a, b]: [usize; 2]| format!("{} and {}", names[a], names[b]);
+            let agree = agree(*best);
+            let as_well = swapped.iter().skip(1).find(|(with, _)| *with < best + AS_WELL_M);
+            let remedy = match as_well {
+                None => format!("with {} swapped {agree}", of_both([*a, *b])),
+                // In a rectangle both make rooms that are each other's mirror image, in which distances are the same.
+                Some((_, other)) => format!(
+                    "with {} swapped {agree}, with {} as well: look at a plan, one room may mirror the other",
+                    of_both([*a, *b]),
+                    of_both(*other)
+                ),
+            };
+            return Some((Some(Reason::Anchor), remedy));
+        }
+        if let Some((with, by)) = self.shifted().filter(|_| is_clear)
+            && let Some(with) = explained(with)
+        {
+            let remedy = format!(
+                "with each anchor {by} places on in the list {}: look from which number both count",
+                agree(with)
+            );
+            return Some((Some(Reason::Anchor), remedy));
+        }
+        let higher = (is_contradiction && height_is_given).then(|| self.higher()).flatten();
+        let longer = is_contradiction.then(|| self.longer()).flatten();
+        if let Some((with, by)) = longer
+            && higher.is_none_or(|(of_height, _)| with < of_height + AS_WELL_M)
+            && let Some(with) = explained(with)
+        {
+            let remedy = format!(
+                "with all ranges {by:.1} m too long {}: calibrate the anchors (--calibration)",
+                agree(with)
+            );
+            // From six anchors on the tracker estimates the common excess itself; of fewer, a part of it goes into positions.
+            let reason = (heard < MANY).then_some(Reason::NotObservable);
+            return Some((reason, remedy));
+        }
+        if let Some((with, by)) = higher
+            && let Some(with) = explained(with)
+        {
+            let remedy = format!("with the tag {by:+.1} m higher {}: --height", agree(with));
+            return Some((Some(Reason::Height), remedy));
+        }
+        if let Some((with, anchor)) = self.without_one().filter(|_| is_clear)
+            && let Some(with) = explained(with)
+        {
+            let remedy = format!(
+                "without {} the others {}: look where it stands, and what it measures",
+                names[anchor],
+                agree(with).trim_start_matches("they ")
+            );
+            return Some((Some(Reason::Anchor), remedy));
+        }
+        None
+    }
+
+    /// What is told of ranges with which least squares find no place at all: in millimetres or centimetres they are so long.
+    pub(super) fn too_far(&self) -> Option<Finding> {
+        let (with, (how, what)) = self.another_unit().filter(|(with, _)| *with < EXPLAINED_M)?;
+        let found = "ranges and anchors agree on no place".to_owned();
+        let remedy = format!("{how} {}{what}", agree(with));
+        Some(Finding::fault("geometry", Reason::Units, found, "there is no position", remedy))
+    }
+
+    /// As if the ranges were in the unit that fits best: how that is said, and what to do about it.
+    fn another_unit(&self) -> Option<(f64, (&'static str, &'static str))> {
+        let ranges: Vec<f64> = self.moments.iter().flatten().map(|(_, range)| *range).collect();
+        let centre = self.anchors.iter().sum::<Vector3<f64>>() / self.anchors.len().max(1) as f64;
+        let spread = self.anchors.iter().map(|it| (it - centre).norm()).fold(0.0, f64::max);
+        let is_far = median(&ranges) > FAR * spread;
+        let each = SCALES.into_iter().filter(|(by, ..)| is_far || *by > SMALLEST).filter_map(
+            |(by, how, what)| {
+                let change =
+                    |moment: &Moment| moment.iter().map(|(a, range)| (*a, range * by)).collect();
+                Some((self.left(change, self.anchors, self.height)?, (how, what)))
+            },
+        );
+        each.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// As if all ranges were too long by the same.
+    fn longer(&self) -> Option<(f64, f64)> {
+        let each = EXCESSES.into_iter().filter_map(|by| {
+            let change =
+                |moment: &Moment| moment.iter().map(|(a, range)| (*a, range - by)).collect();
+            Some((self.left(change, self.anchors, self.height)?, by))
+        });
+        each.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// With any two anchors in each other's place, the best first.
+    fn swapped(&self) -> Vec<(f64, [usize; 2])> {
+        let count = self.anchors.len();
+        let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
+        let each = pairs.filter_map(|pair| {
+            let mut anchors = self.anchors.to_vec();
+            anchors.swap(pair[0], pair[1]);
+            Some((self.left(Moment::clone, &anchors, self.height)?, pair))
+        });
+        let mut each: Vec<_> = each.collect();
+        each.sort_by(|a, b| a.0.total_cmp(&b.0));
+        each
+    }
+
+    /// As if the log counted the anchors from another number on than the list.
+    fn shifted(&self) -> Option<(f64, usize)> {
+        let each = (1..self.anchors.len()).filter_map(|by| {
+            let mut anchors = self.anchors.to_vec();
+            anchors.rotate_right(by);
+            Some((self.left(Moment::clone, &anchors, self.height)?, by))
+        });
+        each.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    fn higher(&self) -> Option<(f64, f64)> {
+        let height = self.height?;
+        let each = HEIGHTS.into_iter().filter_map(|by| {
+            Some((self.left(Moment::clone, self.anchors, Some(height + by))?, by))
+        });
+        each.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    fn without_one(&self) -> Option<(f64, usize)> {
+        let each = (0..self.anchors.len()).filter_map(|left_out| {
+            let change = |moment: &Moment| {
+                moment.iter().copied().filter(|(anchor, _)| *anchor != left_out).collect()
+            };
+            Some((self.left(change, self.anchors, self.height)?, left_out))
+        });
+        each.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+}
+
+/// How well a change makes them agree.
+fn agree(with: f64) -> String {
+    format!("they would agree within {with:.2} m")
+}
+
+/// What least squares leave over of ranges, m, by how many they are beyond the unknowns; none if they are not.
+fn left_over(observations: &[Observation<f64>], height: Option<f64>) -> Option<f64> {
+    let count = observations.len();
+    let unknown = if height.is_some() { 2 } else { 3 };
+    let with_bias = count > unknown + 1;
+    let spare = count.checked_sub(unknown + usize::from(with_bias)).filter(|spare| *spare > 0)?;
+    let solver = Solver {
+        common_bias: with_bias.then_some(COMMON_BIAS_M),
+        ..Solver::new(height.unwrap_or_default())
+    };
+    let cost = match height {
+        Some(_) => solver.solve::<2>(observations, None).ok()?.cost,
+        None => solver.solve::<3>(observations, None).ok()?.cost,
+    };
+    Some((cost / spare as f64).sqrt())
+}
