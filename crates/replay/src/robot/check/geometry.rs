@@ -7,16 +7,14 @@ use std::collections::BTreeSet;
 use kestirim_health::Reason;
 use nalgebra::{Matrix3, Vector3};
 
-use self::explanation::Tried;
+use self::explanation::{CONTRADICTION_M, Tried};
 use super::KnownHeight;
 use super::moments::{self, Moment};
 use crate::Finding;
 use crate::metrics::median;
 use crate::robot::{Anchors, Range};
 
-/// What the ranges leave over is a contradiction from here on, m: beyond biases of 30 cm and a wall.
-const CONTRADICTION_M: f64 = 0.6;
-/// … and one that nothing explains, where walls and people alone may do as much, from here on, m and of the usual range.
+/// What the ranges leave over is a contradiction that nothing explains, where walls and people alone may do as much, from here on, m and of the usual range.
 const UNEXPLAINED_M: f64 = 1.5;
 const UNEXPLAINED_SHARE: f64 = 0.02;
 /// One that nothing explains is a doubt from here on, m and of the usual range: sound recordings of four anchors leave up to 0.34 m,

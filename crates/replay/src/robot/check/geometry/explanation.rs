@@ -4,11 +4,12 @@ use kestirim_health::Reason;
 use kestirim_uwb_ranging::{Observation, Solver};
 use nalgebra::Vector3;
 
-use super::CONTRADICTION_M;
 use crate::Finding;
 use crate::metrics::median;
 use crate::robot::check::moments::Moment;
 
+/// What the ranges leave over is a contradiction from here on, m: beyond biases of 30 cm and a wall.
+pub(super) const CONTRADICTION_M: f64 = 0.6;
 /// Fewer say nothing.
 const FEWEST: usize = 12;
 /// Of so many anchors one that stands elsewhere is averaged down, and the others show the clearer that it is the one: from here on, m.
