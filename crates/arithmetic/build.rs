@@ -1,4 +1,4 @@
-//! Tells the crate whether it is compiled for a Cortex-M0 or M0+, which no condition of the language does.
+//! Sets `cfg(armv6m)` if the target is a Cortex-M0 or M0+, for which the language has no condition.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

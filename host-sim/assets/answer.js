@@ -1,9 +1,9 @@
-// What comes back of a question, on the page: facts, warnings, findings, figures, tables.
+// The presentation of an answer on the page: facts, warnings, findings, figures, tables.
 "use strict";
 const Answer = (() => {
   const { element, make } = Elements;
   const places = new Map();
-  // `how` it is drawn: alone, or compared over each other or as a difference. `gives` makes the buttons of a figure's downloads.
+  // `how` it is drawn: alone, compared over each other, or as a difference. `gives` makes a figure's download buttons.
   function show(answer, how, { clock, zoomed, gives }) {
     tell("facts", answer.facts);
     element("warnings").replaceChildren(...answer.warnings.map((text) => make("li", { textContent: text })));
@@ -15,7 +15,7 @@ const Answer = (() => {
     element("same").hidden = !answer.changed || differs;
     element("changed").tBodies[0].replaceChildren(...(answer.changed ?? []).map(([name, a, b]) => make("tr", {},
       make("th", { scope: "row", textContent: name }), make("td", { textContent: a }), make("td", { textContent: b }))));
-    // A figure of differences is another one than that of what differs.
+    // A figure of differences is distinct from the figure of the same id itself.
     const kind = ({ id, equal, seconds }) => JSON.stringify([id, equal, seconds, how === "difference"]);
     const known = new Set(answer.figures.map(kind));
     for (const [key, { place }] of places) {
@@ -26,7 +26,7 @@ const Answer = (() => {
     }
     clock.see(answer.figures);
     for (const table of answer.tables) tabulate(table, answer.changed ? ", of B" : "", clock);
-    // All places first: each is then drawn as wide as it stays.
+    // All places are made first: each figure is then drawn at its final width.
     for (const figure of answer.figures) {
       if (places.has(kind(figure))) continue;
       const place = make("figure", { id: `figure-${figure.id}` }, make("h3", { textContent: figure.title }));
@@ -44,7 +44,7 @@ const Answer = (() => {
     }
   }
 
-  // Names, and what is told of each.
+  // Fills an element with names and the text of each.
   const tell = (id, told) => element(id).replaceChildren(...told.map(([name, text, className = ""]) =>
     make("div", { className }, make("dt", { textContent: name }), make("dd", { textContent: text }))));
 
@@ -53,7 +53,7 @@ const Answer = (() => {
     element("check").hidden = !found.length && !element("taken").children.length;
   }
 
-  // What files that were dropped were taken for.
+  // Shows what dropped files were recognised as.
   function taken({ taken: files = [], left = [], others = [] }) {
     const unused = left.length ? [["not used", left.join(", ")]] : [];
     const also = others.length ? [["could be of", `${others.join(", ")} as well: choose the system first`]] : [];
@@ -61,7 +61,7 @@ const Answer = (() => {
     if (files.length) element("check").open = true;
   }
 
-  // Rows are made for who looks at them.
+  // Rows are only made for tables that are open.
   function tabulate(table, whose, clock) {
     const id = `table-${table.id}`;
     if (!element(id)) {
@@ -84,7 +84,7 @@ const Answer = (() => {
     element(id).fill();
   }
 
-  // Before another recording.
+  // Clears the page before another recording.
   function clear() {
     for (const shown of ["facts", "warnings", "findings", "taken", "figures", "tables"]) element(shown).replaceChildren();
     for (const hidden of ["check", "again", "give", "differences"]) element(hidden).hidden = true;

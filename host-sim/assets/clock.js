@@ -1,9 +1,9 @@
-// One time for the figures of a page: a window that all of them show, and a cursor that a bar, a mouse, a finger or a key moves.
+// The common time of a page's figures: a window that all show, and a cursor moved by a bar, a mouse, a finger or a key.
 "use strict";
 class Clock {
   static SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
 
-  // What the figures cover, what of it is shown, where the cursor is, all in seconds; and the frame of a play that is on.
+  // The figures' extent, the part shown and the cursor, all in seconds; and the animation frame of a running play.
   /** @type {[number, number] | null} */ span = null;
   /** @type {number[] | null} */ window = null;
   /** @type {number | null} */ cursor = null;
@@ -11,7 +11,7 @@ class Clock {
   /** @type {Set<any>} */ members = new Set();
   /** @type {Set<any>} */ tables = new Set();
 
-  // `changed` is told of every new window and cursor.
+  // `changed` is called for every new window and cursor.
   /** @param {Element} place @param {(clock: Clock) => void} changed */
   constructor(place, changed = () => {}) {
     const { make } = Elements;
@@ -24,7 +24,7 @@ class Clock {
     this.speed.append(...Clock.SPEEDS.map((speed) =>
       make("option", { value: String(speed), textContent: `${speed} ×`, selected: speed === 1 })));
     this.slider = make("input", { type: "range", ariaLabel: "time" });
-    // The bar itself tells it: nobody wants sixty times a second read out.
+    // The slider announces the time itself: announcements sixty times a second would be a nuisance.
     this.told = make("span", { className: "told", ariaHidden: "true" });
     this.all = make("button", { type: "button", textContent: "whole time", className: "whole", hidden: true });
     this.play.addEventListener("click", () => this.#toggle());
@@ -34,32 +34,32 @@ class Clock {
     place.append(this.bar);
   }
 
-  // From when to when a figure reaches, s: over time, or as a map whose points know when they were; null without times.
+  // The time range of a figure in seconds: of one over time, or of a map whose points have times; null without times.
   static reach({ seconds, data }) {
     const ends = Elements.extent(data.flatMap(({ x, customdata }) => (seconds ? x : customdata) ?? []));
     return ends && ends[0] < ends[1] ? ends.map((end) => end * (seconds ?? 1)) : null;
   }
 
-  // All figures that are shown, before they are drawn.
+  // Takes in all figures that are shown, before they are drawn.
   see(figures) {
     const reaches = figures.filter((figure) => figure.seconds).map(Clock.reach).filter(Boolean);
     let low = Math.min(...reaches.map(([low]) => low));
     let high = Math.max(...reaches.map(([, high]) => high));
-    // What is zoomed in comes without what lies outside.
+    // Figures of a zoomed window lack the data outside it.
     if (this.window && this.span) [low, high] = [Math.min(low, this.span[0]), Math.max(high, this.span[1])];
     this.span = low < high ? [low, high] : null;
     this.bar.hidden = !this.span || !this.members.size;
     this.#limit();
   }
 
-  // What is shown, s.
+  // The range that is shown, in seconds.
   range() {
     return this.window ?? this.span;
   }
 
-  // What a figure's axis shows; nothing to say if it is no time.
+  // The range of a figure's time axis; null if it has none.
   axis({ seconds, layout }) {
-    // What a figure itself shows at first holds until somebody looks elsewhere.
+    // A figure's own initial range holds until the window is changed.
     if (!seconds || !this.span || (!this.window && layout.xaxis.range)) return null;
     return this.range().map((end) => end / seconds);
   }
@@ -70,13 +70,13 @@ class Clock {
     entry.plot.addEventListener("pointermove", (event) => {
       if (event.pointerType === "mouse" && !event.buttons && !this.playing) this.#point(entry, event);
     });
-    // A finger that moves zooms.
+    // A moving finger zooms.
     entry.plot.addEventListener("pointerdown", (event) => {
       if (event.pointerType !== "mouse") this.#point(entry, event);
     });
   }
 
-  // Once it is drawn.
+  // Called once the figure is drawn.
   listen(entry) {
     const { plot, figure } = entry;
     if (figure.seconds) plot.on("plotly_relayout", () => this.#zoomed(entry));
@@ -90,11 +90,11 @@ class Clock {
     this.members.delete(entry);
   }
 
-  // A table whose rows know when they were: a click or Enter moves the cursor to one, arrows lead from one to the next.
+  // A table whose rows have times: a click or Enter moves the cursor to a row, arrow keys move between rows.
   /** @param {any} table */
   follow(table) {
     const rows = Elements.all("[data-time]", table);
-    // Tab stops once in a table, at the row where the focus was.
+    // Tab stops once in a table, at the row that last had the focus.
     const stop = (at) => rows.forEach((row) => { row.tabIndex = row === at ? 0 : -1; });
     stop(rows[0]);
     table.addEventListener("focusin", ({ target }) => { if (rows.includes(target)) stop(target); });
@@ -129,9 +129,9 @@ class Clock {
     this.look(is_all ? null : [low, high]);
   }
 
-  // Shows another stretch of time, or all of it.
+  // Shows another window, or the whole time.
   look(window) {
-    // As many digits as an address holds: microseconds.
+    // Rounded to the digits that an address holds: microseconds.
     this.window = window && window.map((end) => Number(end.toFixed(6)));
     for (const { plot, figure } of this.members) {
       const range = this.axis(figure) ?? (figure.seconds && figure.layout.xaxis.range);
@@ -150,7 +150,7 @@ class Clock {
     this.changed(this);
   }
 
-  // One step of a key, as far as an arrow of the bar goes.
+  // Moves the cursor by a key press, as far as an arrow of the bar does.
   step(by) {
     if (!this.range()) return;
     const [low, high] = this.range();
@@ -172,7 +172,7 @@ class Clock {
     if (this.cursor === null || this.cursor < low || this.cursor >= high) this.move(low);
     let before = performance.now();
     const step = (now) => {
-      // What was played may be gone.
+      // The figures that were played may have been removed.
       if (!this.range()) return this.#toggle();
       const [, end] = this.range();
       this.move(Math.min(this.cursor + ((now - before) / 1000) * Number(this.speed.value), end));
@@ -183,18 +183,18 @@ class Clock {
     this.playing = requestAnimationFrame(step);
   }
 
-  // The longer the span, the coarser.
+  // The longer the span, the coarser the text.
   static #words(time, length) {
     if (length < 7200) return `${time.toFixed(length < 20 ? 3 : 2)} s`;
     const whole = Math.floor(time);
     return `${Math.floor(whole / 3600)}:${new Date((whole % 3600) * 1000).toISOString().slice(14, 19)} h`;
   }
 
-  // Draws the cursor where it is; nobody is asked.
+  // Draws the cursor at its position without notifying `changed`.
   /** @param {Iterable<any>} entries */
   mark(entries = this.members) {
     if (this.cursor !== null && this.span) {
-      // From now on there is room for values.
+      // From now on the legends reserve room for values.
       document.body.classList.add("timed");
       this.slider.value = String(this.cursor);
       this.told.textContent = Clock.#words(this.cursor, this.span[1] - this.span[0]);
@@ -223,7 +223,7 @@ class Clock {
     });
   }
 
-  // The row at the cursor is marked, and in sight within its box.
+  // Marks the row at the cursor and scrolls it into view within its box.
   #row(entry) {
     if (!entry.table.isConnected) return void this.tables.delete(entry);
     const place = this.cursor === null ? null : Clock.#at(entry.times, this.cursor);
@@ -246,7 +246,7 @@ class Clock {
     entry.figure.data.forEach(({ name, x, y, customdata, visible, line, mode, meta }) => {
       const place = customdata && visible === true ? Clock.#at(customdata, this.cursor) : null;
       if (!place) return;
-      // Between points that no line joins there is nothing.
+      // Between points that are not joined by a line there is no value.
       if (!mode.includes("lines")) place.share = 0;
       const between = (values) => values[place.before] === null || values[place.after] === null ? NaN
         : values[place.before] + place.share * (values[place.after] - values[place.before]);
@@ -265,7 +265,7 @@ class Clock {
     entry.ellipses.innerHTML = `<svg width="${xaxis._length}" height="${yaxis._length}">${ellipses.join("")}</svg>`;
   }
 
-  // The unit circle's point (u, v) lies at (a u, b u + c v) from the centre, in units of the axes; nothing where that is not known.
+  // The unit circle's point (u, v) lies at (a u, b u + c v) from the centre, in units of the axes; empty if unknown.
   static #ellipse({ xaxis, yaxis }, [a, b, c], [left, top], colour) {
     const [across, up] = [xaxis, yaxis].map((axis) => axis.l2p(1) - axis.l2p(0));
     const matrix = [across * a, up * b, 0, up * c, left, top];
@@ -280,7 +280,7 @@ class Clock {
 
   static #sorted = new WeakMap();
 
-  // The neighbours of a time, and how far it is from the first to the second; null beyond the ends.
+  // The neighbours of a time, and its position between them from 0 to 1; null beyond the ends.
   static #at(times, time) {
     const sorted = Clock.#sorted.get(times) ?? times.every((value, i) => i === 0 || (value !== null && value >= times[i - 1]));
     Clock.#sorted.set(times, sorted);

@@ -1,9 +1,9 @@
-// Controls of what can be set: sliders, choices, switches. They know no setting and tell what is turned.
+// The controls of settings: sliders, choices, switches. They know nothing about particular settings and report changes.
 "use strict";
 const Controls = (() => {
   const { all, make } = Elements;
 
-  // Whether a value of another recording can be set here as well.
+  // Whether a control accepts a value that was set for another recording.
   function takes(control, value) {
     const offers = (value) => control.options.some(([name]) => name === value);
     const kinds = {
@@ -18,7 +18,7 @@ const Controls = (() => {
 
   function slider(control, given, change, busy) {
     const log = control.logarithmic;
-    // No more digits than are told.
+    // Rounded to the digits that are shown.
     const [inward, outward] = log ? [Math.log10, (v) => Number((10 ** v).toPrecision(3))] : [Number, Number];
     const output = make("output");
     const range = make("input", { type: "range", id: `control-${control.name}`, step: control.step });
@@ -32,7 +32,7 @@ const Controls = (() => {
     };
     tell();
     range.addEventListener("input", () => change(tell()));
-    // A slider need not move to be answered.
+    // The value at which the slider stands can be taken without moving it.
     const take = make("button", { type: "button", className: "take", textContent: "take this value" });
     take.addEventListener("click", () => range.dispatchEvent(new Event("input")));
     const parts = [make("label", { htmlFor: `control-${control.name}` }, output, control.label), range, take];
@@ -46,7 +46,7 @@ const Controls = (() => {
     button.addEventListener("click", () => {
       if (timer) { clearInterval(timer); timer = null; button.textContent = "play"; return; }
       button.textContent = "pause";
-      // The last step may end below the maximum: the end is where nothing moves any more.
+      // The last step may end below the maximum: the end is reached when the value no longer changes.
       const step = () => { const before = range.value; range.stepUp(); return range.value !== before; };
       if (!step()) range.value = range.min;
       timer = setInterval(() => {
@@ -93,7 +93,7 @@ const Controls = (() => {
 
   const kinds = { slider, choice, switch: toggle, set, text };
 
-  // Puts all of them into a place as `settings` stand; `change` is told a name and its value, none for the default.
+  // Builds the controls in a place with values of `settings`; `change` gets a name and a value, none for the default.
   function build(place, controls, settings, change, busy) {
     place.replaceChildren(...controls.map((control) => {
       const tell = (value) => change(control.name, value);
@@ -103,7 +103,7 @@ const Controls = (() => {
     }));
   }
 
-  // What has no effect as the others stand cannot be turned, and says why.
+  // Disables controls that have no effect given the others, and shows the reasons.
   function disable(reasons) {
     for (const part of all("[data-setting]")) {
       const reason = reasons.get(part.dataset.setting);

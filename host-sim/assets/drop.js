@@ -1,19 +1,19 @@
-// Files that somebody drops on the page or chooses together: one, several, whole folders.
+// Files that are dropped on the page or chosen together: one, several, or whole folders.
 "use strict";
 const Drop = {
-  // All files of a folder, without hidden ones.
+  // All files of a folder, except hidden ones.
   async within(entry) {
     if (entry.isFile) return [await new Promise((done, fail) => entry.file(done, fail))];
     const [reader, found] = [entry.createReader(), []];
     for (;;) {
-      // A folder gives a hundred at a time.
+      // A folder is read a hundred entries at a time.
       const some = await new Promise((done, fail) => reader.readEntries(done, fail));
       if (!some.length) return found;
       for (const it of some) if (!it.name.startsWith(".")) found.push(...await Drop.within(it));
     }
   },
 
-  // `take` is told of files, `complain` of what cannot be read.
+  // `take` is called with files, `complain` with a message if they cannot be read.
   listen(take, complain) {
     const over = (is) => { document.documentElement.classList.toggle("dropping", is); };
     addEventListener("dragover", (event) => { event.preventDefault(); over(true); });
@@ -21,7 +21,7 @@ const Drop = {
     addEventListener("drop", (event) => {
       event.preventDefault();
       over(false);
-      // What is not asked for at once is gone.
+      // Items must be accessed synchronously: they are gone after the event.
       const items = [...(event.dataTransfer?.items ?? [])].filter(({ kind }) => kind === "file");
       const parts = items.map((item) => ({ entry: item.webkitGetAsEntry(), file: item.getAsFile() }));
       Promise.all(parts.map(({ entry, file }) => (entry ? Drop.within(entry) : [file])))

@@ -1,4 +1,4 @@
-// Elements of a page: made and found.
+// Making and finding elements of a page.
 "use strict";
 const Elements = {
   make(tag, properties = {}, ...children) {
@@ -7,13 +7,13 @@ const Elements = {
     return made;
   },
 
-  // Of whatever kind.
+  // Elements of any kind.
   /** @type {(id: string) => any} */
   element: (id) => document.getElementById(id),
   /** @type {(selector: string, within?: Document | Element) => any[]} */
   all: (selector, within = document) => [...within.querySelectorAll(selector)],
 
-  // The least and the greatest of numbers; null if there is none.
+  // The minimum and maximum of numbers; null if there are none.
   extent(values) {
     let [low, high] = [Infinity, -Infinity];
     for (const value of values) if (value !== null) [low, high] = [Math.min(low, value), Math.max(high, value)];

@@ -1,8 +1,8 @@
-// The explorer: sends how the controls stand, shows what comes back. It knows no system and computes nothing.
+// The explorer: sends the state of the controls and shows the answer. It knows no system and computes nothing.
 "use strict";
 {
   const { all, element, make } = Elements;
-  // What the address holds, but for window and cursor, which the clock has. `a` is what is compared with.
+  // The state in the address, except for window and cursor, which the clock has. `a` is what is compared with.
   let state = { system: "", recording: "", settings: {}, a: null, how: "over" };
   let [sources, largest, controls, disabled, windows] = [[], 0, [], new Map(), {}];
   const clock = new Clock(element("clock"), () => { written(); if (looked !== seen()) ask(); });
@@ -15,12 +15,12 @@
     Answer.show(answer, answer.changed ? state.how : "alone", { clock, zoomed, gives });
   }
 
-  // What a refusal asks for by the name of an option is where the page asks for it, and is shown there.
+  // If an error names an option, its control is highlighted where the page has it.
   function complain(sentence) {
     element("alert").textContent = sentence;
     const asked = new Set([...sentence.matchAll(/--([a-z][a-z-]*)/g)].map(([, name]) => name));
     let first = null;
-    // A control answers at once, a field of the files when they are opened again.
+    // A control takes effect at once, a field of the files when they are opened again.
     for (const part of all("[data-option], [data-setting]")) {
       const is = asked.has(part.dataset.setting ?? part.dataset.option) && !part.classList.contains("disabled");
       part.classList.toggle("asked", is);
@@ -59,7 +59,7 @@
     looked = seen();
     try {
       const answer = await post(asked, question());
-      // What was opened meanwhile has an answer of its own.
+      // A recording opened in the meantime has its own answer.
       if (answer && asked === of("answer")) {
         show(answer);
         document.body.dataset.milliseconds = String(Math.round(performance.now() - began));
@@ -72,7 +72,7 @@
     }
   }
 
-  // A figure that is zoomed in and has no time gets its points from there.
+  // A zoomed figure without a time axis requests its points for that range.
   function zoomed(id, range) {
     if (JSON.stringify(windows[id] ?? null) === JSON.stringify(range)) return;
     if (range) windows[id] = range; else delete windows[id];
@@ -91,7 +91,7 @@
   // --- what was before can be had again
   const [past, future] = [[], []];
   let [turned, when] = ["", 0];
-  // Before something changes. One movement of a control is one change.
+  // Called before a change. One movement of a control counts as one change.
   function remember(what = "") {
     if (!state.recording) return;
     const [now, before] = [performance.now(), JSON.stringify(state)];
@@ -110,7 +110,7 @@
     offerHistory();
   }
 
-  // Shows a state that was.
+  // Shows an earlier state.
   function restore(wanted) {
     const same = wanted.system === state.system && wanted.recording === state.recording;
     if (wanted.system !== state.system) offer(wanted.system);
@@ -130,15 +130,15 @@
     ask();
   }
 
-  // Controls and comparison as a state has them.
+  // Sets controls and comparison to those of a state.
   function take({ system, recording, settings: given, a, how }) {
-    // What cannot be set here is left out.
+    // Settings that this recording does not accept are dropped.
     const can = ([name, value]) => controls.some((it) => it.name === name && Controls.takes(it, value));
     const settings = Object.fromEntries(Object.entries(given).filter(can));
     const focused = document.activeElement?.id;
     state = { system, recording, settings, a, how };
     Controls.build(element("controls"), controls, settings, change, () => asking);
-    // Until the answer comes, as they were.
+    // Until the answer arrives, the same controls as before stay disabled.
     Controls.disable(disabled);
     if (focused?.startsWith("control-")) element(focused)?.focus();
     for (const id of ["how", "swap", "end"]) element(id).hidden = !a;
@@ -156,7 +156,7 @@
   function opened(reply, wanted) {
     Answer.clear();
     windows = {};
-    // Another recording has another time, unless an address says which.
+    // Another recording has its own time, unless the address states a window.
     [clock.span, clock.window, clock.cursor] = [null, wanted.window ?? null, wanted.cursor ?? null];
     if (!reply) {
       [state, controls] = [{ ...state, recording: "", a: null }, []];
@@ -181,10 +181,10 @@
 
   // --- recordings
   const askForFiles = (does) => { for (const id of ["any", "files", "upload"]) element(id).hidden = !does; };
-  // That of a system; the first of nobody's.
+  // The sources of a system; those of the first one by default.
   const source = (system = sources[0]?.system) => sources.find((source) => source.system === system);
 
-  // What can be opened of a system.
+  // Offers what can be opened of a system.
   function offer(name) {
     const { system, bundled, files, reading } = source(name);
     element("system").value = system;
@@ -205,7 +205,7 @@
     )));
   }
 
-  // The last that was asked for is opened, however long another takes; until then nothing else can be changed.
+  // The last requested recording is opened, however long another takes; until then nothing else can be changed.
   let [openings, opening] = [0, false];
   async function open(path, body, wanted) {
     const number = ++openings;
@@ -216,7 +216,7 @@
     if (number !== openings) return;
     opening = false;
     if (!reply) {
-      // Where to choose them again.
+      // Offers to choose the files again.
       element("bundled").value = "";
       askForFiles(true);
     }
@@ -253,7 +253,7 @@
   });
   const fits = (files) => files.reduce((sum, { size = 0 }) => sum + size, 0) <= largest
     || complain(`more than ${largest >> 20} MiB at once: replay, on the command line, takes more`);
-  // Files of which nobody says what they are; those that a recording still lacks are added to them.
+  // Files of unknown kind; those that a recording still lacks are added to them.
   let dropped = [];
   async function drop(files) {
     if (opening || !files.length || !fits(files)) return;
@@ -299,7 +299,7 @@
       .then(() => { button.textContent = "copied"; }));
   }
 
-  // A button that gives a file of this session.
+  // A button that downloads a file of this session.
   function giver(file, text, label = text) {
     const button = make("button", { type: "button", className: "give", textContent: text, ariaLabel: `download ${label}` });
     button.addEventListener("click", async () => {
@@ -312,7 +312,7 @@
     });
     return button;
   }
-  // Nothing is kept of a stream.
+  // A stream offers no downloads.
   const gives = ({ id, title }) => (sources.length ? ["svg", "csv"] : []).map((ending) =>
     giver(`figure-${id}.${ending}`, ending.toUpperCase(), `${title} as ${ending.toUpperCase()}`));
 

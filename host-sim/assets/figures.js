@@ -1,11 +1,11 @@
-// Draws figures that the program computed: theme, legend and keys. Everything else is Plotly's.
+// Draws figures computed by the program: theme, legend and keys. Everything else is done by Plotly.
 "use strict";
 const Figures = (() => {
   const drawn = new Map();
   const resized = new ResizeObserver((entries) => {
     for (const { target } of entries) {
       const entry = [...drawn.values()].find((it) => it.plot === target);
-      // What is folded away has no size.
+      // A folded figure has no size.
       if (!entry?.plot.data || !entry.plot.offsetParent) continue;
       if (entry.figure.equal) fit(entry);
       Plotly.Plots.resize(target).then(() => entry.clock?.mark([entry]));
@@ -13,9 +13,9 @@ const Figures = (() => {
   });
   const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const { make } = Elements;
-  // Pixels beside the axes of a map: numbers, labels and the edge.
+  // The pixels beside the axes of a map: numbers, labels and the margin.
   const [BESIDE, BELOW] = [70, 54];
-  // A map is as high as what it shows is at its width: no path is a thread in an empty field.
+  // A map is as high as its contents require at its width, so that no path is a thread in an empty field.
   function fit({ plot, figure }) {
     const extent = (axis, along) => {
       if (axis.range) return axis.range[1] - axis.range[0];
@@ -31,14 +31,14 @@ const Figures = (() => {
 
   function axis(given, map) {
     const colours = { gridcolor: style("--line"), zerolinecolor: style("--line"), linecolor: style("--line") };
-    // A map's proportions and growing margins chase each other.
+    // A map's fixed aspect ratio and growing margins would affect each other endlessly.
     const fit = map ? { constrain: "domain" } : { automargin: true };
     return { ...fit, ...colours, ...structuredClone(given) };
   }
 
   function layout({ figure, clock }) {
     const range = clock?.axis(figure);
-    // A stretch of time that was chosen elsewhere holds here as well.
+    // A window chosen elsewhere applies here as well.
     const shown = range ? { range, autorange: false, uirevision: range.join() } : {};
     return {
       xaxis: { ...axis(figure.layout.xaxis, figure.equal), ...shown },
@@ -52,12 +52,12 @@ const Figures = (() => {
       hovermode: "closest",
       dragmode: "zoom",
       showlegend: false,
-      // Zoom outlives new data.
+      // The zoom is kept when the data change.
       uirevision: "kept",
     };
   }
 
-  // HTML buttons in place of Plotly's legend: they wrap on a phone and take the keyboard, and tell values at the cursor.
+  // HTML buttons in place of Plotly's legend: they wrap on a phone, take the keyboard, and show values at the cursor.
   function legend(entry) {
     const { figure, hidden, buttons } = entry;
     entry.values = figure.data.map(() => make("span", { className: "value", ariaHidden: "true" }));
@@ -77,7 +77,7 @@ const Figures = (() => {
     }), png(entry));
   }
 
-  // A button that gives a figure as it is shown, with its title and names.
+  // A button that downloads a figure as shown, with its title and names.
   function png({ plot, figure }) {
     const button = make("button", { type: "button", className: "give", textContent: "PNG", ariaLabel: `download ${figure.title} as PNG` });
     button.addEventListener("click", () => {
@@ -89,9 +89,9 @@ const Figures = (() => {
     return button;
   }
 
-  // + and − zoom, arrows move, 0 shows everything; comma and full stop move the cursor.
+  // + and − zoom, arrow keys pan, 0 shows everything; comma and full stop move the cursor.
   function keys(event, { plot, clock }) {
-    // The browser's own keys stay its own.
+    // The browser's own shortcuts are left alone.
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     const { xaxis, yaxis } = plot._fullLayout;
     const change = (by, move) => {
@@ -135,13 +135,13 @@ const Figures = (() => {
     return entry;
   }
 
-  // `clock` holds the figure's time, `zoomed` is told of stretches of other axes.
+  // `clock` holds the figure's time, `zoomed` is called with ranges of other axes.
   function draw(place, figure, { clock = null, zoomed = null } = {}) {
     const entry = drawn.get(place) ?? prepare(place, figure, { clock, zoomed });
     const first = !entry.plot.data;
     entry.figure = figure;
     for (const series of figure.data) {
-      // A new name is hidden if the program says so; one of a comparison, if what it is of was hidden here.
+      // A new series is hidden if the program says so; one of a comparison, if its origin was hidden here.
       if (!entry.known.has(series.name)) {
         const of = series.name.replace(/^[AB]: /, "");
         const hides = entry.known.has(of) ? entry.hidden.has(of) : series.visible === "legendonly";
@@ -156,7 +156,7 @@ const Figures = (() => {
     if (first && figure.equal) fit(entry);
     const done = Plotly.react(entry.plot, figure.data, layout(entry), {
       displaylogo: false, scrollZoom: false,
-      // A page asks nobody but the program: Plotly offers to send figures to its makers, unless told otherwise.
+      // A page contacts only the program: by default Plotly offers to send figures to its makers.
       showSendToCloud: false,
       modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d", "toImage"],
     });

@@ -1,6 +1,6 @@
-// A stream: one picture at a time, of now or of what was, as the controls stand.
+// A live stream: one picture at a time, of the present or of an earlier moment, for the present controls.
 "use strict";
-// `show` is given the pictures, `complain` what was refused.
+// `show` is called with the pictures, `complain` with errors.
 function follow({ controls: offered, settings }, { show, complain }) {
   const { all, element } = Elements;
   const socket = new WebSocket(`ws://${location.host}/live`);
@@ -8,7 +8,7 @@ function follow({ controls: offered, settings }, { show, complain }) {
   let [paused, busy, due, asked] = [false, true, false, null];
   for (const part of all(offered.length ? "#open, #compare, #settings .buttons" : ".controls, #compare")) part.hidden = true;
   element("back").hidden = false;
-  // Five times a second would be too much to be read out.
+  // Announcing changes five times a second would be too much.
   element("facts").ariaLive = "off";
   if (!offered.length) all(".explorer")[0].style.gridTemplateColumns = "minmax(0, 1fr)";
   const want = () => {

@@ -1,2 +1,2 @@
-// What the page's scripts use of others, for `tsc --checkJs`.
+// Declarations of foreign code that the page's scripts use, for `tsc --checkJs`.
 declare const Plotly: any;

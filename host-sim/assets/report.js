@@ -1,9 +1,9 @@
-// The report: figures are drawn when they come into view; those of one recording have one time.
+// The report: figures are drawn when they come into view; those of one recording share a clock.
 "use strict";
 {
   const figures = JSON.parse(document.getElementById("figures").textContent);
   const { all, make } = Elements;
-  // Figures that reach as far, to three digits, are of one recording: they have one time, and a bar behind the last of them.
+  // Figures of the same time range, to three digits, are of one recording: they share a clock and a bar behind them.
   const reach = (figure) => Clock.reach(figure)?.map((end) => Number(end.toPrecision(3))).join();
   const clocks = new Map();
   for (const section of all("[data-clock]")) {
@@ -33,7 +33,7 @@
     }
   }, { rootMargin: "600px" });
   for (const place of all("[data-figure]")) seen.observe(place);
-  // Paper shows all of them.
+  // All figures are drawn for printing.
   addEventListener("beforeprint", () => {
     for (const part of all("details")) part.open = true;
     for (const place of all("[data-figure]")) draw(place);

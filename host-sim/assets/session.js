@@ -1,7 +1,7 @@
-// A session in an address: system, recording, settings, what is compared, and the clock's window and cursor.
+// A session in an address: system, recording, settings, comparison, and the clock's window and cursor.
 "use strict";
 const Session = {
-  // What is as at first is not said.
+  // Initial values are omitted.
   write(state, { window, cursor }, source) {
     const query = new URLSearchParams();
     const say = (name, value) => { if (value) query.set(name, value); };
@@ -15,7 +15,7 @@ const Session = {
     return String(query) ? `${state.system}?${query}` : state.system;
   },
 
-  // What an address says; what it does not say is as at first. `source` gives that of a system, or the first.
+  // Parses an address; what it omits has its initial value. `source` returns the sources of a system, or the first.
   read(hash, source) {
     const [system, query] = hash.replace(/^#/, "").split(/\?(.*)/s);
     const found = source(system) ?? source();

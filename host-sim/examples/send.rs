@@ -1,4 +1,4 @@
-//! Sends synthetic measurements to `host-sim live`, each in a datagram of its own, at their own pace:
+//! Sends synthetic measurements to `host-sim live`, each in its own datagram and at the pace of the recording:
 //! `cargo run --release -p host-sim --example send -- --system robot`.
 
 use std::error::Error;
@@ -43,7 +43,7 @@ enum System {
     Uav,
 }
 
-/// Measurements in the order of their times (µs).
+/// The measurements with their times (µs), in chronological order.
 fn measurements(system: System, seed: u64) -> Vec<(u64, Message)> {
     let mut rng = stream(seed, 0);
     match system {
@@ -70,7 +70,7 @@ fn measurements(system: System, seed: u64) -> Vec<(u64, Message)> {
                 let [x, y] = [0.065, 0.105].map(|rate| 200.0 * (second as f64 * rate).sin());
                 let place = [x, y, 50.0];
                 let distance = (place[0] - 100.0).hypot(place[1] - 100.0).hypot(place[2]);
-                // What 2 GHz loses over open ground, and shadowing.
+                // The path loss over open ground at 2 GHz, with shadowing.
                 let loss = 38.5 + 20.0 * distance.log10() + normal(&mut rng, 3.0);
                 let (time_us, place) = (second * 1_000_000, place.map(|metres| metres as f32));
                 (time_us, PathLoss { time_us, place, loss: loss as f32 }.into())

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use crate::text::printable_path;
 
-/// Why a command could not be carried out: one plain sentence, and exit status 2.
+/// The reason why a command failed: one plain sentence, reported with exit status 2.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -16,11 +16,11 @@ pub enum Error {
     Read {
         /// The file, as named by the user.
         path: PathBuf,
-        /// What the operating system said.
+        /// The operating system's error.
         source: io::Error,
     },
 
-    /// A file as a whole is not what it should be.
+    /// The contents of a file as a whole are not as expected.
     #[error("{}: {problem}", printable_path(.path))]
     File {
         /// The file, as named by the user.
@@ -29,7 +29,7 @@ pub enum Error {
         problem: String,
     },
 
-    /// A line of a file is not what it should be.
+    /// A line of a file is not as expected.
     #[error("{}, line {line}: {problem}", printable_path(.path))]
     Line {
         /// The file, as named by the user.
@@ -45,21 +45,22 @@ pub enum Error {
     Write {
         /// The file, as named by the user.
         path: PathBuf,
-        /// What the operating system said.
+        /// The operating system's error.
         source: io::Error,
     },
 
-    /// Shards, plans and tables.
+    /// An error of a sweep: its shards, plans or tables.
     #[error(transparent)]
     Sweep(#[from] kestirim_sweep::Error),
 
-    /// Standard output cannot be written, for a reason other than a reader that went away.
+    /// Standard output cannot be written, for a reason other than a reader that has closed the pipe.
     #[error("standard output cannot be written: {0}")]
     Stdout(#[source] io::Error),
 }
 
 impl Error {
-    /// With files below `folder` named by their last part: what an uploaded file is called, not where it lies.
+    /// Shortens the paths of files below `folder` to their file names, so that an uploaded file is named as uploaded,
+    /// not by where it is stored.
     pub fn naming_files_below(mut self, folder: &Path) -> Self {
         match &mut self {
             Self::Read { path, .. }

@@ -1,11 +1,11 @@
-//! Feeds the estimators with synthetic and recorded streams and shows what comes out.
+//! Feeds the estimators with synthetic and recorded streams and presents the results.
 //!
 //! A sample flows one way: a recorded log or a seeded scenario → the system's estimator → an account of plain data,
 //! which a command prints, draws or writes.
 //!
-//! Everything inside is SI and radians; other units are converted where a file is read.
-//! Every system lives in its own folder below [`systems`] and knows nothing of the others; the [`commands`] know
-//! no more of one than the face that [`system`] describes.
+//! All internal quantities are in SI units and radians; other units are converted where a file is read. Every system
+//! lives in its own folder below [`systems`], independent of the others; the [`commands`] know each system only through
+//! the interface that [`system`] describes.
 
 pub mod commands;
 mod error;
@@ -24,6 +24,6 @@ pub use kestirim_figure as figure;
 pub use kestirim_replay::metrics;
 pub use kestirim_simulate::random;
 
-/// Stack of a thread that estimates: a filter of thousands of particles is moved about a few times before it
-/// lies on the heap.
+/// The stack size of a thread that runs estimators, in bytes: a filter of thousands of particles is moved several times
+/// on the stack before it is boxed.
 pub const STACK_BYTES: usize = 16 << 20;

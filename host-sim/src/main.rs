@@ -1,10 +1,10 @@
-//! The program: hands the command line to the library.
+//! The executable: passes the command line on to the library.
 
 use std::process::ExitCode;
 
 use host_sim::{Error, commands, output};
 
-/// Wrong usage or unreadable input.
+/// The exit status for wrong usage or unreadable input.
 const REFUSED: u8 = 2;
 
 fn main() -> ExitCode {

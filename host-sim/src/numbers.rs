@@ -1,60 +1,62 @@
-//! The numbers of a device's frames: what is new, what is missing, and what another sender's.
+//! The sequence numbers of a device's frames: which frames are new, missing, or from another sender.
 
 use kestirim_telemetry::{Frame, Origin};
 use serde::{Deserialize, Serialize};
 
-/// Numbers behind the newest that are remembered: so far may frames overtake each other on their way.
+/// How far behind the newest sequence number frames are still tracked: the limit on their reordering in transit.
 const WINDOW: u32 = u128::BITS;
-/// Frames whose checksums are remembered.
+/// The number of recent frames whose checksums are remembered.
 const REMEMBERED: usize = 8;
-/// So many frames of another sender are told; fewer may be late ones, from before the device was switched off.
+/// The number of frames of another sender from which on they are reported; fewer may be late ones from before the
+/// device was switched off.
 pub(crate) const TOLD: u32 = 8;
 
-/// Where a frame stands among those of its device before.
+/// The place of a frame in the sequence of its device's frames.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Place {
-    /// Newer than all before.
+    /// The frame is newer than all before it.
     Newest {
-        /// Numbers that did not come, so far, since the newest before.
+        /// The number of frames missing so far between this one and the newest before it.
         missing: u32,
     },
-    /// The device was switched on again; its newest.
+    /// The device was switched on again; this is its newest frame.
     Restarted {
-        /// Numbers since then that did not come, so far.
+        /// The number of frames missing so far since the device was switched on.
         missing: u32,
     },
-    /// A number that was missing.
+    /// The frame had been missing.
     Late {
-        /// How far it is behind the newest.
+        /// How far its sequence number is behind the newest.
         behind: u16,
     },
-    /// The same frame once more.
+    /// The frame is a duplicate.
     Twice,
-    /// A number that came before with another content, far behind the newest, or from before the device was switched
-    /// on: of another sender with the same device number, or of one that does not count its boots.
+    /// The frame has the number of an earlier one but other contents, is far behind the newest, or dates from before
+    /// the device was switched on: it is from another sender with the same device number, or from one that does not
+    /// count its boots.
     Another,
 }
 
-/// Follows the numbers of one device.
+/// Tracks the sequence numbers of one device.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Numbers {
     boot: u32,
     newest: u32,
-    /// Bit n: the number n behind the newest came.
+    /// Bit n is set if the frame n behind the newest has arrived.
     came: u128,
-    /// Numbers and checksums of the last frames.
+    /// Sequence numbers and checksums of recent frames.
     last: [(u32, u32); REMEMBERED],
 }
 
 impl Numbers {
-    /// From a device's first frame on: those before are not missing.
+    /// Starts with the first frame received from a device: earlier ones do not count as missing.
     pub(crate) fn from(origin: Origin, frame: &Frame) -> Self {
         let (sequence, checksum) = (frame.sequence, frame.checksum);
         let last = [(sequence, checksum); REMEMBERED];
         Self { boot: origin.boot, newest: sequence, came: u128::MAX, last }
     }
 
-    /// Where the next frame stands.
+    /// Classifies the next frame.
     pub(crate) fn take(&mut self, origin: Origin, frame: &Frame) -> Place {
         if origin.boot < self.boot {
             return Place::Another;
@@ -106,7 +108,7 @@ mod tests {
         Receiver::new().frames(bytes).next().expect("a frame")
     }
 
-    /// Where frames with these boots and numbers stand.
+    /// Classifies frames with these boot counts and sequence numbers.
     fn places<const N: usize>(numbers: [(u32, u32); N]) -> [Place; N] {
         let mut known = None::<Numbers>;
         numbers.map(|(boot, sequence)| {

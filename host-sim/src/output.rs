@@ -1,4 +1,4 @@
-//! Where results go: standard output in one piece, files whole or not at all.
+//! Output of results: standard output in one piece, files atomically.
 
 use std::env;
 use std::fmt::Display;
@@ -17,10 +17,10 @@ use serde::Serialize;
 use crate::Error;
 use crate::text::printable_path;
 
-/// Prints a report on standard output: for people, or as one JSON object.
+/// Prints a report on standard output: as text, or as one JSON object.
 ///
 /// # Errors
-/// [`Error::Stdout`] if it cannot be written; a reader that went away (`| head`) is no error.
+/// [`Error::Stdout`] if it cannot be written; a reader that closes the pipe (`| head`) is no error.
 pub fn show(report: &(impl Serialize + Display), json: bool) -> Result<(), Error> {
     let text = if json {
         serde_json::to_string(report).map_err(|error| Error::Stdout(error.into()))?
@@ -33,16 +33,16 @@ pub fn show(report: &(impl Serialize + Display), json: bool) -> Result<(), Error
 /// Prints a text and a line break on standard output.
 ///
 /// # Errors
-/// As [`show`].
+/// [`Error::Stdout`] if it cannot be written; a closed pipe is no error.
 pub fn print(text: &str) -> Result<(), Error> {
     let mut stdout = io::stdout().lock();
     done(writeln!(stdout, "{}", text.trim_end()).and_then(|()| stdout.flush()))
 }
 
-/// What became of writing to standard output.
+/// The outcome of writing to standard output; a closed pipe counts as success.
 ///
 /// # Errors
-/// As [`show`].
+/// [`Error::Stdout`] if it cannot be written.
 pub fn done(written: io::Result<()>) -> Result<(), Error> {
     match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::Stdout(error)),
@@ -50,28 +50,28 @@ pub fn done(written: io::Result<()>) -> Result<(), Error> {
     }
 }
 
-/// Says something on standard error that is not a result.
+/// Prints a message that is not a result on standard error.
 pub fn warn(message: &str) {
-    // There is nobody left to tell if standard error is closed.
+    // If standard error is closed the message has nowhere to go.
     let _ = writeln!(io::stderr(), "{message}");
 }
 
-/// Says on standard error what a reader of a file should know.
+/// Prints warnings about a file on standard error.
 pub fn warn_of(path: &Path, warnings: &[String]) {
     for warning in warnings {
         warn(&format!("warning: {}: {warning}", printable_path(path)));
     }
 }
 
-/// Columns of a line of standard output: what `COLUMNS` says, or else those of the terminal. None for a file or a pipe,
-/// whose reader looks for whole lines.
+/// The width of standard output in columns: `COLUMNS`, or else that of the terminal. `None` for a file or a pipe, whose
+/// readers expect unbroken lines.
 pub fn width() -> Option<u16> {
     let said = env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     let said = said.filter(|&columns| columns > 0);
     said.or_else(|| Term::stdout().size_checked().map(|(_, columns)| columns))
 }
 
-/// An empty table in the house style, as wide as the terminal at most.
+/// An empty table in the house style, at most as wide as the terminal.
 pub fn table() -> Table {
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED).set_content_arrangement(ContentArrangement::Dynamic);
@@ -96,14 +96,14 @@ fn style(bar: &ProgressBar, what: &str) {
     }
 }
 
-/// A progress bar that appears when the work takes longer than a second, and is invisible before.
+/// A progress bar that appears only once the work has taken longer than a second.
 pub fn late_progress(steps: u64, what: &str) -> LateProgress {
     let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::hidden());
     style(&bar, what);
     LateProgress { bar, begun: Instant::now(), shown: Once::new() }
 }
 
-/// See [`late_progress`].
+/// The progress bar that [`late_progress`] returns.
 #[derive(Debug)]
 pub struct LateProgress {
     bar: ProgressBar,
@@ -112,7 +112,7 @@ pub struct LateProgress {
 }
 
 impl LateProgress {
-    /// Another step is done.
+    /// Advances the bar by a step.
     pub fn inc(&self) {
         if !self.shown.is_completed() && self.begun.elapsed() > Duration::from_secs(1) {
             self.shown.call_once(|| self.bar.set_draw_target(ProgressDrawTarget::stderr()));
@@ -127,10 +127,10 @@ impl Drop for LateProgress {
     }
 }
 
-/// Refuses outputs, which are options and their files, if two are one file, or one is an input as well.
+/// Refuses `outputs` (pairs of option and file) if two are the same file, or one is also an input.
 ///
 /// # Errors
-/// [`Error::Usage`].
+/// [`Error::Usage`] that names the clash.
 pub fn refuse_clashes<'a>(
     outputs: &[(&str, Option<&Path>)],
     inputs: &(impl IntoIterator<Item = &'a PathBuf> + Clone),
@@ -139,10 +139,10 @@ pub fn refuse_clashes<'a>(
     outputs.iter().try_for_each(|&(option, path)| refuse_overwriting(option, path, inputs.clone()))
 }
 
-/// Refuses to write two results to one file: `outputs` are options and their files.
+/// Refuses to write two results to the same file: `outputs` are pairs of option and file.
 ///
 /// # Errors
-/// [`Error::Usage`].
+/// [`Error::Usage`] that names the two options.
 pub fn refuse_twice(outputs: &[(&str, Option<&Path>)]) -> Result<(), Error> {
     let mut known: Vec<(&str, PathBuf)> = Vec::new();
     for &(option, path) in outputs {
@@ -155,7 +155,7 @@ pub fn refuse_twice(outputs: &[(&str, Option<&Path>)]) -> Result<(), Error> {
     Ok(())
 }
 
-/// Refuses to write to a file that is an input as well.
+/// Refuses to write to a file that is also an input.
 ///
 /// # Errors
 /// [`Error::Usage`].
@@ -175,10 +175,10 @@ pub fn refuse_overwriting<'a>(
     }
 }
 
-/// Writes a file so that it is never seen half-written: beside it first, then renamed.
+/// Writes a file atomically: to a draft beside it first, which is then renamed.
 ///
 /// # Errors
-/// [`Error::Write`] if anything fails; then whatever stood at `path` is untouched.
+/// [`Error::Write`] if anything fails; whatever was at `path` is then untouched.
 pub fn write_file(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -193,7 +193,7 @@ pub fn write_file(
     })
 }
 
-/// A name beside `path` that nobody else uses.
+/// A name beside `path` that no other file or process uses.
 fn draft_path(path: &Path) -> io::Result<PathBuf> {
     // Renaming over a device such as /dev/null would replace the device.
     if path.exists() && !path.is_file() {
@@ -206,7 +206,7 @@ fn draft_path(path: &Path) -> io::Result<PathBuf> {
     Ok(path.with_file_name(draft))
 }
 
-/// Refuses a file that cannot be written, before what would be written is calculated.
+/// Refuses a file that cannot be written, before its contents are computed.
 ///
 /// # Errors
 /// [`Error::Write`].
@@ -216,14 +216,14 @@ pub fn refuse_unwritable(path: &Path) -> Result<(), Error> {
     write_new(&draft, |_| Ok(())).and_then(|()| fs::remove_file(&draft)).map_err(failed)
 }
 
-/// Refuses a folder that cannot be made or written into, before what would be written is calculated.
+/// Refuses a folder that cannot be created or written to, before its contents are computed.
 ///
 /// # Errors
 /// [`Error::Write`].
 pub fn refuse_unwritable_folder(folder: &Path) -> Result<(), Error> {
     let failed = |source| Error::Write { path: folder.to_path_buf(), source };
     let absolute = path::absolute(folder).map_err(failed)?;
-    // What is missing of the path is made below what is there.
+    // The missing part of the path will be created below the part that exists.
     let there = absolute.ancestors().find(|folder| folder.exists()).unwrap_or(&absolute);
     let draft = there.join(format!(".report.{}.tmp", process::id()));
     write_new(&draft, |_| Ok(())).and_then(|()| fs::remove_file(&draft)).map_err(failed)

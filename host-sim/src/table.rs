@@ -1,4 +1,4 @@
-//! Tables whose columns are wanted by name, whatever separates them, with every complaint naming the file and the line.
+//! Tables whose columns are found by name, with any separator; every error names the file and the line.
 
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -12,39 +12,39 @@ use kestirim_import::{
 use crate::Error;
 use crate::text::{self, listed, printable};
 
-/// Beyond any clock, s: three centuries, within which a double resolves microseconds.
+/// The largest plausible time in seconds: three centuries, within which a double resolves microseconds.
 const LATEST_TIME: f64 = 1e10;
-/// Beyond any place on earth in any projection, m.
+/// The largest plausible coordinate in metres, beyond any place on earth in any projection.
 pub(crate) const FARTHEST_POSITION: f64 = 1e8;
 
-/// So many columns that are not used are named.
+/// The maximum number of unused columns named in a message.
 pub(crate) const MOST_NAMED: usize = 12;
 
 /// How a log was read.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Found {
-    /// What was concluded about columns and units, and from what.
+    /// The conclusions about columns and units, and what they are based on.
     pub import: Vec<String>,
-    /// What was skipped.
+    /// Warnings about what was skipped.
     pub warnings: Vec<String>,
 }
 
-/// A log that is read.
+/// A log to be read.
 #[derive(Debug, Clone, Copy)]
 pub struct Log<'a> {
-    /// What it holds, for complaints.
+    /// A description of the contents, for error messages.
     pub what: &'a str,
-    /// The usual time between its lines is one of these, from one to the other, s: what is not is in another unit. None if
-    /// that says nothing.
+    /// The usual range of the time between lines, in seconds: a step outside it means that times are in another unit.
+    /// `None` if the step says nothing.
     pub usual_step_s: Option<[f64; 2]>,
-    /// What the user says about it.
+    /// The user's description of the log.
     pub options: &'a Options,
 }
 
-/// Reads a table: `row` is called for each line below the header. Its first damaged line refuses it.
+/// Reads a table, calling `row` for each line below the header. The first damaged line is an error.
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read<T>(
     path: &Path,
     what: &str,
@@ -56,7 +56,7 @@ pub fn read<T>(
     read_log(path, &table, columns, row).map(drop)
 }
 
-/// Whether a file is a table with these columns, by its beginning.
+/// Whether a file is a table with these columns, judged by its beginning.
 pub fn has<const N: usize>(path: &Path, names: [&str; N]) -> bool {
     let options = Options { strict: true, ..Options::default() };
     let table = Log { what: "a table", usual_step_s: None, options: &options };
@@ -65,11 +65,11 @@ pub fn has<const N: usize>(path: &Path, names: [&str; N]) -> bool {
         .is_ok_and(|bytes| parse(path, &bytes, &table, header, |_, _| Ok(())).is_ok())
 }
 
-/// Reads a log: as [`read`], but up to a hundredth of its lines, which `row` refuses without having changed anything, are
-/// skipped and counted.
+/// Reads a log: like [`read`], but up to a hundredth of its lines may be damaged. Lines that `row` refuses, without
+/// having changed anything, are skipped and counted.
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read_log<T>(
     path: &Path,
     log: &Log<'_>,
@@ -82,7 +82,7 @@ pub fn read_log<T>(
 /// Reads the contents of the file `path` as [`read_log`] does.
 ///
 /// # Errors
-/// As [`read_log`].
+/// Those of [`read_log`].
 pub fn parse<T>(
     path: &Path,
     bytes: &[u8],
@@ -130,7 +130,7 @@ pub fn parse<T>(
     Ok(Found { import, warnings: damage.sentences() })
 }
 
-/// What the importer refuses, in a file.
+/// Converts an error of the importer to one that names the file.
 pub fn refused(path: &Path, error: &ImportError) -> Error {
     let path = path.to_path_buf();
     match error {
@@ -154,7 +154,7 @@ fn fields_of<'a>(
     Err(line.error(format!("expected {expected} fields as in the header, found {found}")))
 }
 
-/// The unit of a time of which nobody says it, from its spacing; none of dates and times of day.
+/// Infers the unit of a time column from its spacing if none is stated; `None` for dates and times of day.
 fn unit_of_time(
     table: &NamedTable<'_>,
     places: &[(String, Column, String)],
@@ -176,7 +176,7 @@ fn unit_of_time(
     if has_moments { Ok(None) } else { unit.map(Some) }
 }
 
-/// What was understood of columns that are named otherwise than documented, or have other units.
+/// The conclusions about columns whose names or units are not the documented ones.
 fn conclusions(table: &NamedTable<'_>, places: &[(String, Column, String)]) -> Vec<String> {
     let mut parts: Vec<String> = Vec::new();
     for (wanted, _, told) in places {
@@ -190,13 +190,13 @@ fn conclusions(table: &NamedTable<'_>, places: &[(String, Column, String)]) -> V
     if parts.is_empty() { Vec::new() } else { vec![format!("{}: header", parts.join(", "))] }
 }
 
-/// A column that was found.
+/// A column found in the header.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Column {
     at: usize,
-    /// How much one of its unit is in that of the SI.
+    /// The factor from the column's unit to the SI unit.
     scale: f64,
-    /// Whether the header or an option says the unit.
+    /// Whether the header or an option states the unit.
     has_unit: bool,
 }
 
@@ -209,26 +209,26 @@ impl Column {
 pub struct Header<'a> {
     path: &'a Path,
     heading: &'a Heading<'a>,
-    /// What was wanted, where it stands, and what is to be told of it.
+    /// The columns found: the name asked for, the column, and how to describe it to the user.
     found: RefCell<Vec<(String, Column, String)>>,
 }
 
 impl Header<'_> {
-    /// A complaint about the header.
+    /// An error about the header.
     pub fn error(&self, problem: impl Into<String>) -> Error {
         Line { path: self.path, number: self.heading.line }.error(problem)
     }
 
-    /// A complaint that there is no column of this name, or of these names.
+    /// The error that there is no column of this name, or of these names.
     pub fn lacks(&self, names: &str) -> Error {
         refused(self.path, &self.heading.lacks(names))
     }
 
-    /// The column `name`, if there is one: of exactly this name, or as people name it. Upper and lower case of other names
-    /// than those known to the importer differ: `T` may well be a temperature.
+    /// Finds the column `name`, if there is one, under exactly this name or a usual synonym. Names other than those
+    /// known to the importer are case-sensitive: `T` may well be a temperature.
     ///
     /// # Errors
-    /// [`Error::Line`] if two columns may be it.
+    /// [`Error::Line`] if two columns match.
     pub fn find(&self, name: &str) -> Result<Option<Column>, Error> {
         let place = self.heading.find(name).map_err(|error| refused(self.path, &error))?;
         Ok(place.map(|place| {
@@ -246,10 +246,10 @@ impl Header<'_> {
         }))
     }
 
-    /// The columns `names`.
+    /// Finds all columns `names`.
     ///
     /// # Errors
-    /// [`Error::Line`] if one is missing, or two may be it.
+    /// [`Error::Line`] if a column is missing, or two match.
     pub fn require<const N: usize>(&self, names: [&str; N]) -> Result<[Column; N], Error> {
         let mut columns = [Column::NONE; N];
         for (column, name) in columns.iter_mut().zip(names) {
@@ -258,10 +258,10 @@ impl Header<'_> {
         Ok(columns)
     }
 
-    /// The columns `names`, if they are all there.
+    /// Finds the columns `names`, or `None` if any is missing.
     ///
     /// # Errors
-    /// As [`Self::find`].
+    /// Those of [`Self::find`].
     pub fn all<const N: usize>(&self, names: [&str; N]) -> Result<Option<[Column; N]>, Error> {
         let mut columns = [Column::NONE; N];
         for (column, name) in columns.iter_mut().zip(names) {
@@ -271,13 +271,13 @@ impl Header<'_> {
         Ok(Some(columns))
     }
 
-    /// The column that is this one, but for a unit in brackets behind its name.
+    /// The column of this name, apart from a unit in brackets after it.
     pub fn with_unit(&self, name: &str) -> Option<&str> {
         let bare = |column: &str| column.split(['[', '(']).next().map(str::trim) == Some(name);
         self.heading.names().iter().map(String::as_str).find(|column| bare(column))
     }
 
-    /// A sentence that names the columns of which nobody asked, if there are any.
+    /// A sentence that lists the unused columns, if there are any.
     fn left_out(&self) -> Option<String> {
         let found = self.found.borrow();
         let is_found = |at: usize| found.iter().any(|(_, column, _)| column.at == at);
@@ -296,7 +296,7 @@ pub struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// A complaint about this line.
+    /// An error about this line.
     pub fn error(&self, problem: impl Into<String>) -> Error {
         let path = self.path.to_path_buf();
         Error::Line { path, line: self.number, problem: problem.into() }
@@ -306,11 +306,11 @@ impl Line<'_> {
 /// A line below the header.
 #[derive(Debug)]
 pub struct Row<'a> {
-    /// The line, for complaints.
+    /// The line, for error messages.
     pub line: Line<'a>,
     table: &'a NamedTable<'a>,
     fields: Vec<Cow<'a, [u8]>>,
-    /// How many s one of its time is, if no header says it.
+    /// The unit of time in seconds, if no header states it.
     second: f64,
 }
 
@@ -320,7 +320,7 @@ impl Row<'_> {
         String::from_utf8_lossy(self.field(column))
     }
 
-    /// Whether there is nothing in a field, or what programs write then: `nan`.
+    /// Whether a field is empty, or holds the `nan` that programs write in its place.
     pub fn is_empty(&self, column: Column) -> bool {
         let field = self.field(column);
         field.is_empty() || field.eq_ignore_ascii_case(b"nan")
@@ -330,17 +330,17 @@ impl Row<'_> {
         self.fields.get(column.at).map_or(&[], |field| field)
     }
 
-    /// A number in the unit of the SI, which may be infinite or not a number; none if there is something else.
+    /// A number in SI units, which may be infinite or NaN; `None` if the field holds anything else.
     pub fn any_number(&self, column: Column) -> Option<f64> {
         let value = self.table.number(self.field(column))?;
-        // A value in the usual unit stays bit for bit as it stands there.
+        // A value in the usual unit is kept bit for bit.
         Some(if column.scale == 1.0 { value } else { value * column.scale })
     }
 
-    /// A finite number in the unit of the SI.
+    /// A finite number in SI units.
     ///
     /// # Errors
-    /// [`Error::Line`] if it is anything else.
+    /// [`Error::Line`] if the field holds anything else.
     pub fn number(&self, name: &str, column: Column) -> Result<f64, Error> {
         self.any_number(column).filter(|value| value.is_finite()).ok_or_else(|| {
             let found = printable(&self.text(column));
@@ -348,10 +348,10 @@ impl Row<'_> {
         })
     }
 
-    /// Coordinates, m.
+    /// A coordinate in metres.
     ///
     /// # Errors
-    /// [`Error::Line`] if one is not a number, or beyond the earth.
+    /// [`Error::Line`] if the field is not a number, or lies beyond the earth.
     pub fn coordinate(&self, name: &str, column: Column) -> Result<f64, Error> {
         let value = self.number(name, column)?;
         if value.abs() > FARTHEST_POSITION {
@@ -362,10 +362,10 @@ impl Row<'_> {
         Ok(value)
     }
 
-    /// A time: a number, a date with a time, or a time of day, as microseconds.
+    /// A time in microseconds, from a number, a date with a time, or a time of day.
     ///
     /// # Errors
-    /// [`Error::Line`] if it is none, or beyond any clock.
+    /// [`Error::Line`] if the field is not a time, or lies beyond any clock.
     pub fn time_us(&self, column: Column) -> Result<i64, Error> {
         let seconds = match self.table.moment(self.field(column)) {
             Some(seconds) => seconds,

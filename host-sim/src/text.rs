@@ -1,4 +1,4 @@
-//! Text files that are no tables, read so that every complaint names the file and the line; and text for people.
+//! Text files other than tables, read so that every error names the file and the line; and text for people.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -8,12 +8,12 @@ use serde::de::DeserializeOwned;
 
 use crate::Error;
 
-/// Largest file that is read into memory, bytes.
+/// The size of the largest file that is read into memory, in bytes.
 const LARGEST: u64 = 1 << 30;
-/// Enough to see of a table what it is, bytes.
+/// The length of a file's beginning, in bytes: enough to recognise a table.
 const BEGINNING: u64 = 1 << 16;
 
-/// What a file holds.
+/// Reads the contents of a file.
 ///
 /// # Errors
 /// [`Error::Read`] if it cannot be read, or is too large.
@@ -25,10 +25,10 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
     read.map_err(|source| Error::Read { path: path.to_path_buf(), source })
 }
 
-/// The first whole lines of a file, some tens of kilobytes of it at most.
+/// The first whole lines of a file, at most some tens of kilobytes.
 ///
 /// # Errors
-/// If it cannot be read.
+/// An error if the file cannot be read.
 pub fn beginning(path: &Path) -> io::Result<Vec<u8>> {
     regular(path)?;
     let mut bytes = Vec::new();
@@ -40,14 +40,14 @@ pub fn beginning(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// How large a file is, in bytes. A pipe or a device may have no end, or never begin.
+/// The size of a regular file, in bytes. Pipes and devices are refused: they may never begin or end.
 ///
 /// # Errors
-/// If there is no file of this name, or it is no regular one.
+/// An error if there is no file of this name, or it is not a regular one.
 pub fn regular(path: &Path) -> io::Result<u64> {
     let file = fs::metadata(path)?;
     if file.is_file() || file.is_dir() {
-        // What is wrong with a folder the operating system says.
+        // The operating system reports what is wrong with a folder.
         return Ok(file.len());
     }
     Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a pipe or a device, not a file"))
@@ -84,18 +84,18 @@ impl TextFile {
         Ok(Self { path: path.to_path_buf(), text })
     }
 
-    /// What the file holds as JSON.
+    /// Parses the file as JSON.
     ///
     /// # Errors
-    /// [`Error::Line`]: what was `expected`, and what the parser found instead.
+    /// [`Error::Line`] that says what was `expected`, and what the parser found instead.
     pub fn json<T: DeserializeOwned>(&self, expected: &str) -> Result<T, Error> {
         Ok(self.json_with_unused(expected)?.0)
     }
 
-    /// The same, with the names of what nobody asks for: `noise.inputz`.
+    /// Parses the file as JSON and returns the paths of unused fields as well: `noise.inputz`.
     ///
     /// # Errors
-    /// As [`TextFile::json`].
+    /// Those of [`TextFile::json`].
     pub fn json_with_unused<T: DeserializeOwned>(
         &self,
         expected: &str,
@@ -103,12 +103,12 @@ impl TextFile {
         let mut unused = Vec::new();
         let mut json = serde_json::Deserializer::from_str(&self.text);
         let contents =
-            // What may be missing is a question mark in the path.
+            // Optional values appear as a question mark in the path.
             serde_ignored::deserialize(&mut json, |path| unused.push(path.to_string().replace(".?", "")));
         let ended = contents.and_then(|contents| json.end().map(|()| contents));
         let contents = ended.map_err(|error| {
             let complaint = error.to_string();
-            // The parser ends with the place, with which the sentence begins.
+            // The parser's message ends with the location, which `Error::Line` states first.
             let reason = complaint.split(" at line ").next().unwrap_or_default();
             let problem = format!("expected {expected}: {reason}");
             Error::Line { path: self.path.clone(), line: error.line(), problem }
@@ -124,7 +124,7 @@ impl TextFile {
         trimmed.filter(|line| !line.text.is_empty())
     }
 
-    /// A complaint about the file as a whole.
+    /// An error about the file as a whole.
     pub fn error(&self, problem: impl Into<String>) -> Error {
         Error::File { path: self.path.clone(), problem: problem.into() }
     }
@@ -135,19 +135,19 @@ impl TextFile {
 pub struct Line<'a> {
     file: &'a TextFile,
     number: usize,
-    /// The line without its surrounding blanks.
+    /// The line without surrounding whitespace.
     pub text: &'a str,
 }
 
 impl Line<'_> {
-    /// A complaint about this line.
+    /// An error about this line.
     pub fn error(&self, problem: impl Into<String>) -> Error {
         let path = self.file.path.clone();
         Error::Line { path, line: self.number, problem: problem.into() }
     }
 }
 
-/// A piece of a file, quoted so that it stays on one line of a terminal, and short.
+/// Quotes an excerpt of a file, shortened and escaped so that it stays on one line of a terminal.
 pub fn printable(text: &str) -> String {
     const LONGEST: usize = 24;
     if text.is_empty() {
@@ -158,7 +158,7 @@ pub fn printable(text: &str) -> String {
     format!("\"{}{dots}\"", start.escape_debug())
 }
 
-/// Words as they are typed into a shell: what holds more than letters, digits and a few signs is quoted.
+/// Joins words into a shell command: words with other characters than letters, digits and a few signs are quoted.
 pub fn command_line(words: impl IntoIterator<Item = String>) -> String {
     let plain = |letter: char| letter.is_alphanumeric() || "-_./,:=+%@°".contains(letter);
     let quoted = words.into_iter().map(|word| {
@@ -168,7 +168,7 @@ pub fn command_line(words: impl IntoIterator<Item = String>) -> String {
     quoted.collect::<Vec<_>>().join(" ")
 }
 
-/// Names from a file, at most so many of them, in a message.
+/// Lists names from a file in a message, at most `most` of them.
 pub fn listed<'a>(names: impl IntoIterator<Item = &'a str>, most: usize) -> String {
     let mut names = names.into_iter();
     let mut told: Vec<_> = names.by_ref().take(most).map(printable).collect();
@@ -184,7 +184,7 @@ pub fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// A path as a user would write it, on one line whatever its name holds.
+/// Formats a path as a user would write it, on one line whatever its name holds.
 pub fn printable_path(path: &Path) -> String {
     path.display().to_string().replace(char::is_control, "?")
 }

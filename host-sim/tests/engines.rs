@@ -1,8 +1,9 @@
-//! The recipes of `contrib` under the engines themselves, with tasks and servers killed in the middle: what is put together is
-//! the single run.
+//! Tests of the recipes in `contrib` with the real engines, with tasks and servers killed in the middle: the merged
+//! result equals a single run.
 //!
-//! Slurm is Debian's `slurm-wlm`, on the loopback alone, as root; `hyperqueue` the package of that name, in a virtual environment
-//! that is made below `target/tmp`. Where they are missing these tests say SKIPPED, unless `KESTIRIM_REQUIRE_ENGINES` is set.
+//! Slurm is Debian's `slurm-wlm`, on the loopback interface only, as root; `hyperqueue` is the package of that name, in
+//! a virtual environment below `target/tmp`. If they are missing these tests report SKIPPED, unless
+//! `KESTIRIM_REQUIRE_ENGINES` is set.
 #![cfg(target_os = "linux")]
 
 use std::env;
@@ -16,7 +17,7 @@ use std::time::{Duration, Instant};
 const PLAN: &str = "system = 'drone'\ntrials = 300\nseeds = [1, 2]\nshards = 6\n\
                     [settings]\nfilter = 'published'\nparticles = 1000\nheight = [500, 800]";
 
-/// Until what takes seconds is given up.
+/// The timeout of steps that take seconds.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 fn contrib(recipe: &str) -> PathBuf {
@@ -40,7 +41,7 @@ fn host_sim(folder: &Path, arguments: &[&str]) -> Output {
     command("host-sim", folder).args(arguments).output().expect("the program runs")
 }
 
-/// Rows and text of a single run.
+/// The rows and the text of a single run.
 fn single_run(folder: &Path) -> (Vec<u8>, Vec<u8>) {
     fs::write(folder.join("plan.toml"), PLAN).expect("a plan");
     fs::create_dir(folder.join("one")).expect("a folder");
@@ -56,7 +57,7 @@ fn is_single_run(folder: &Path, (rows, text): &(Vec<u8>, Vec<u8>)) {
     assert!(fs::read(folder.join("merged.csv")).expect("rows") == *rows, "other rows");
 }
 
-/// Tasks of a folder, by their ids.
+/// The process ids of a folder's tasks.
 fn tasks(folder: &Path) -> Vec<String> {
     let is_task = |process: &Path| {
         fs::read(process.join("cmdline")).is_ok_and(|it| it.starts_with(b"host-sim\0sweep\0"))
@@ -67,7 +68,7 @@ fn tasks(folder: &Path) -> Vec<String> {
     tasks.filter_map(|process| process.file_name().into_string().ok()).collect()
 }
 
-/// Whether there was such a task.
+/// Kills a process; returns whether it existed.
 fn kill(id: &str) -> bool {
     let killed = Command::new("kill").args(["-KILL", id]).stderr(Stdio::null()).status();
     killed.expect("kill runs").success()
@@ -82,13 +83,13 @@ fn kill_a_task(folder: &Path) {
     }
 }
 
-/// Says that an engine is missing.
+/// Reports that an engine is missing.
 fn skipped(engine: &str) {
     assert!(env::var_os("KESTIRIM_REQUIRE_ENGINES").is_none(), "{engine} is missing");
     println!("SKIPPED: {engine} is missing");
 }
 
-/// Python with `hyperqueue`.
+/// A Python interpreter with `hyperqueue`.
 fn hyperqueue() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("hyperqueue");
     let python = folder.join("bin/python");
@@ -123,12 +124,12 @@ fn hyperqueue_with_its_server_and_a_task_killed() {
             .spawn()
             .expect("python")
     };
-    // Server and worker are one process here, its tasks others.
+    // Server and worker are one process here, the tasks others.
     let mut engine = start();
     kill_a_task(folder);
     engine.kill().expect("SIGKILL");
     engine.wait().expect("it ends");
-    // Its tasks outlive it, and would be taken for the next one's.
+    // The tasks outlive it, and would be mistaken for those of the next one.
     while tasks(folder).iter().any(|id| kill(id)) {
         sleep(Duration::from_millis(20));
     }
@@ -139,7 +140,7 @@ fn hyperqueue_with_its_server_and_a_task_killed() {
     is_single_run(folder, &expected);
 }
 
-/// Daemons of Slurm in a folder, on the loopback alone.
+/// The daemons of Slurm in a folder, on the loopback interface only.
 struct Slurm<'a>(&'a Path);
 
 impl Slurm<'_> {
@@ -178,7 +179,7 @@ impl Slurm<'_> {
         String::from_utf8_lossy(&output.stdout).into_owned()
     }
 
-    /// Waits until it is so.
+    /// Waits until a condition holds.
     fn until(&self, what: &str, is_so: impl Fn() -> bool) {
         let begun = Instant::now();
         while !is_so() {
@@ -202,7 +203,7 @@ impl Slurm<'_> {
 
 impl Drop for Slurm<'_> {
     fn drop(&mut self) {
-        // What it leaves is in a folder that is removed.
+        // Its files are in a temporary folder.
         let _ = self.command("scontrol").arg("shutdown").output();
     }
 }

@@ -1,8 +1,8 @@
-//! `host-sim fleet` behind a real broker, with broker and program killed in the middle: every track is that of the device's own
-//! replay, nothing is lost and nothing there twice.
+//! Tests of `host-sim fleet` with a real broker, with broker and program killed in the middle: every track is that of
+//! the device's own replay, nothing is lost and nothing duplicated.
 //!
-//! `nats-server` is Debian's, on the loopback alone. Where it is missing the test says SKIPPED, unless
-//! `KESTIRIM_REQUIRE_ENGINES` is set. `KESTIRIM_TAGS` and `KESTIRIM_SECONDS` choose a longer form.
+//! `nats-server` is Debian's, on the loopback interface only. If it is missing the test reports SKIPPED, unless
+//! `KESTIRIM_REQUIRE_ENGINES` is set. `KESTIRIM_TAGS` and `KESTIRIM_SECONDS` select a longer form.
 #![cfg(all(target_os = "linux", feature = "fleet"))]
 
 use std::collections::BTreeMap;
@@ -22,21 +22,21 @@ use host_sim::systems::ALL;
 use kestirim_telemetry::{CAPACITY, Message, Origin, Range, Receiver, encode_from};
 use serde_json::Value;
 
-/// Corners of a hall, m.
+/// The anchors in the corners of a hall (m).
 const ANCHORS: [[f64; 3]; 4] =
     [[0.0, 0.0, 2.5], [20.0, 0.0, 2.0], [20.0, 15.0, 2.5], [0.0, 15.0, 2.0]];
-/// Epochs a second.
+/// The number of epochs per second.
 const RATE: usize = 10;
-/// Messages that the sender has on the way.
+/// The maximum number of unconfirmed messages of the sender.
 const ON_THE_WAY: usize = 2000;
-/// Until the broker has answered.
+/// The timeout for an answer of the broker.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 fn number(name: &str, default: usize) -> usize {
     env::var(name).map_or(default, |text| text.parse().expect("a number"))
 }
 
-/// A process that is killed in the end.
+/// A process that is killed when this is dropped.
 struct Running(Child);
 
 impl Running {
@@ -62,7 +62,7 @@ fn broker(folder: &Path, port: u16) -> Running {
     Running(child.expect("nats-server"))
 }
 
-/// The program, once it follows.
+/// Starts the program and waits until it follows the stream.
 fn program(folder: &Path, port: u16) -> Running {
     let url = format!("nats://127.0.0.1:{port}");
     let begun = Instant::now();
@@ -83,13 +83,13 @@ fn program(folder: &Path, port: u16) -> Running {
     }
 }
 
-/// What a tag measures in an epoch, in one message.
+/// The ranges of a tag in an epoch, as one message.
 fn message(device: u32, epoch: usize) -> Vec<u8> {
     let angle = epoch as f64 * 0.02 + f64::from(device);
     let place = [10.0 + 4.0 * angle.cos(), 7.0 + 4.0 * angle.sin(), 0.5];
     let frames = ANCHORS.iter().enumerate().flat_map(|(index, anchor)| {
         let square: f64 = anchor.iter().zip(place).map(|(a, b)| (a - b).powi(2)).sum();
-        // As if it were noise, of 5 cm.
+        // A deterministic substitute for noise of 5 cm.
         let noise = 0.05 * (1e3 * f64::from(device) + 7.0 * epoch as f64 + index as f64).sin();
         let (time_us, range) = (epoch as u64 * 100_000, (square.sqrt() + noise) as f32);
         let range = Range { time_us, anchor: index as u16, range }.into();
@@ -102,7 +102,7 @@ fn message(device: u32, epoch: usize) -> Vec<u8> {
     frames.collect()
 }
 
-/// Sends it until the broker has it, once.
+/// Sends a message until the broker has confirmed it; its id prevents duplicates.
 async fn send(context: Context, device: u32, epoch: usize) {
     let bytes = message(device, epoch);
     loop {
@@ -118,7 +118,7 @@ async fn send(context: Context, device: u32, epoch: usize) {
     }
 }
 
-/// All tags send, each an epoch every tenth of a second; how long it took.
+/// Sends the messages of all tags, an epoch each every tenth of a second; returns the duration.
 async fn send_all(context: Context, tags: usize, epochs: usize) -> Duration {
     let begun = Instant::now();
     for epoch in 0..epochs {
@@ -130,7 +130,7 @@ async fn send_all(context: Context, tags: usize, epochs: usize) -> Duration {
     begun.elapsed()
 }
 
-/// What an estimator of its own makes of what a tag sent: time and place after each message.
+/// The track that a separate estimator computes from a tag's messages: time and position after each.
 fn replay(folder: &Path, device: u32, epochs: usize) -> Vec<(u64, [f32; 3])> {
     let system = ALL.iter().find(|system| system.name() == "robot").expect("a system");
     let mut settings = Settings::new(system.settings());
@@ -152,7 +152,7 @@ fn replay(folder: &Path, device: u32, epochs: usize) -> Vec<(u64, [f32; 3])> {
     track
 }
 
-/// All estimates, by device: number, time and place, in the order of the numbers.
+/// All estimates by device: number, time and position, ordered by number.
 async fn estimates(context: &Context) -> BTreeMap<u32, Vec<(u32, u64, [f32; 3])>> {
     let stream = context.get_stream("estimates").await.expect("a stream");
     let count = stream.get_info().await.expect("it is told").state.messages;
@@ -173,7 +173,7 @@ async fn estimates(context: &Context) -> BTreeMap<u32, Vec<(u32, u64, [f32; 3])>
     all
 }
 
-/// kB of memory that a process has.
+/// The resident memory of a process in kB.
 fn memory_kb(process: &Child) -> usize {
     let status = fs::read_to_string(format!("/proc/{}/status", process.id())).expect("a status");
     let line = status.lines().find(|line| line.starts_with("VmRSS:")).expect("memory");
@@ -226,7 +226,7 @@ fn a_fleet_with_broker_and_program_killed() {
     let begun = Instant::now();
     let replays: BTreeMap<_, _> =
         (1..=tags as u32).map(|device| (device, replay(folder, device, epochs))).collect();
-    // The first ranges of a tag tell no place yet.
+    // The first ranges of a tag do not determine a position yet.
     let expected: usize = replays.values().map(Vec::len).sum();
     let stored = || {
         runtime.block_on(async {
@@ -236,7 +236,7 @@ fn a_fleet_with_broker_and_program_killed() {
     };
     let (mut changed, mut last) = (Instant::now(), None);
     while stored().is_none_or(|count| count < expected) {
-        // As long as more come they are waited for.
+        // The wait continues while more arrive.
         let now = stored();
         if now != last {
             (changed, last) = (Instant::now(), now);
@@ -246,7 +246,7 @@ fn a_fleet_with_broker_and_program_killed() {
     }
     let following = begun.elapsed();
     let after_kb = memory_kb(&fleet.0);
-    // Once more what would come, if anything came twice.
+    // A further wait, in which any duplicates would arrive.
     sleep(Duration::from_secs(2));
     Command::new("kill").args(["-TERM", &fleet.0.id().to_string()]).status().expect("kill");
     let said = fleet.0.stdout.take().expect("piped");

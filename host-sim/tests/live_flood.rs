@@ -1,4 +1,4 @@
-//! Telemetry among garbage: no good frame is lost, and all is on the disk before it is counted.
+//! Tests of telemetry among garbage: no good frame is lost, and everything is on the disk before it is counted.
 
 mod sender;
 
@@ -29,7 +29,7 @@ fn start(folder: &TempDir) -> (Live, PathBuf) {
     (Live::of(live).expect("it listens"), path)
 }
 
-/// A message like those of a walker who also ranges, of which one in a thousand cannot be true.
+/// A message like those of a walker who also ranges; one in a thousand is implausible.
 fn message(number: usize, rng: &mut impl Rng) -> Message {
     let time_us = number as u64 * 5_000;
     match number % 10 {
@@ -44,7 +44,7 @@ fn message(number: usize, rng: &mut impl Rng) -> Message {
     }
 }
 
-/// Everything that is not a good frame.
+/// Garbage of several kinds, none of which is a good frame.
 fn garbage(kind: usize, rng: &mut impl Rng) -> Vec<u8> {
     let whole = || frame(Health { time_us: 1, accepted: 2, rejected: 3, failed: 4 }, 5);
     match kind % 5 {
@@ -69,7 +69,7 @@ fn garbage(kind: usize, rng: &mut impl Rng) -> Vec<u8> {
     }
 }
 
-/// Pieces of any length, cut wherever it happens.
+/// Cuts bytes into pieces of random lengths.
 fn pieces<'a>(mut bytes: &'a [u8], rng: &mut impl Rng) -> Vec<&'a [u8]> {
     let mut pieces = Vec::new();
     while !bytes.is_empty() {
@@ -108,14 +108,14 @@ fn a_flood_of_garbage_costs_no_good_frame() {
     assert!(counts.corrupt as usize >= FRAMES / 20, "{counts:?}");
     assert_eq!(counts.refused as usize, FRAMES / 1000, "{counts:?}");
     assert_eq!(counts.taken as usize, FRAMES * 7 / 10 - FRAMES / 1000, "{counts:?}");
-    // However long the stream, a page is not.
+    // The page is bounded, however long the stream.
     let points =
         answer.figures.iter().flat_map(|figure| &figure.series).map(|s| s.x.len()).sum::<usize>();
     assert!((1000..200_000).contains(&points), "{points}");
     let recorded = fs::read(&path).expect("the recording");
     assert!(recorded == bytes, "every byte is recorded, in its order");
     let (found, _) = decoded(&recorded);
-    // A NaN is not equal to itself, its bits are.
+    // A NaN is not equal to itself, but its bits are.
     let same = |(a, b): (&Message, &Message)| format!("{a:?}") == format!("{b:?}");
     assert!(found.len() == FRAMES && found.iter().zip(&messages).all(same));
 }

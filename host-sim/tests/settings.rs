@@ -1,5 +1,5 @@
-//! A setting is said once: the command line, the page and a live stream have the same ones, each does something or
-//! says why not, and what is set can be typed again and put into firmware.
+//! Tests that a setting is declared once: the command line, the page and a live stream have the same ones, each has an
+//! effect or a reason for none, and the settings can be reproduced as a command and as firmware.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -16,7 +16,7 @@ use host_sim::system::{
 };
 use host_sim::systems::ALL;
 
-/// Texts of the forms that settings have.
+/// Texts in the forms that settings have.
 const TEXTS: [&str; 6] = [
     "anchors",
     "-2,-2.5,-3,-3.5",
@@ -26,7 +26,7 @@ const TEXTS: [&str; 6] = [
     "3582104,532590,5232755",
 ];
 
-/// The arguments of a subcommand, as a system's name completes it.
+/// The arguments of a subcommand, selected by words including the system's name.
 fn arguments(words: &[&str]) -> Vec<Arg> {
     let typed: Vec<_> = ["host-sim"].iter().chain(words).map(OsString::from).collect();
     let mut command = commands::command(&typed);
@@ -50,7 +50,7 @@ fn with(opened: &dyn Opened, given: &[(&'static str, SettingValue)]) -> Settings
     settings
 }
 
-/// What a recording answers with these values, or that it refuses them; computed once, whichever test asks first.
+/// The answer of a recording with these values, or `None` if it refuses them; computed once, whichever test asks first.
 fn answer(
     system: &dyn AnySystem,
     recording: &str,
@@ -59,14 +59,14 @@ fn answer(
 ) -> Option<Arc<Answer>> {
     type Answered = Arc<OnceLock<Option<Arc<Answer>>>>;
     static ANSWERED: Mutex<BTreeMap<String, Answered>> = Mutex::new(BTreeMap::new());
-    // Whoever comes second waits for this answer, and for no other.
+    // A second caller waits for this answer only.
     let key = format!("{} {recording} {given:?}", system.name());
     let answered =
         ANSWERED.lock().unwrap_or_else(PoisonError::into_inner).entry(key).or_default().clone();
     answered.get_or_init(|| opened.answer(&with(opened, given)).ok()).clone()
 }
 
-/// Values that a setting does not have at first.
+/// Values of a setting that differ from the default.
 fn others(setting: &Setting) -> Vec<SettingValue> {
     let text = |text: &str| SettingValue::Text(text.to_owned());
     match &setting.kind {
@@ -96,7 +96,7 @@ fn others(setting: &Setting) -> Vec<SettingValue> {
     }
 }
 
-/// Everything that a person sees but the command and the firmware.
+/// Everything visible in an answer except the command and the firmware.
 fn seen(answer: &Answer) -> (Vec<(String, String)>, Vec<String>, String) {
     (answer.facts.clone(), answer.warnings.clone(), format!("{:?}", answer.figures))
 }
@@ -105,7 +105,7 @@ fn is_idle(answer: &Answer, name: &str) -> bool {
     answer.disabled.iter().any(|(idle, reason)| *idle == name && !reason.is_empty())
 }
 
-/// Answers of a recording with each single choice or switch, the first with none.
+/// Given values to test in: none at first, then each single choice or switch.
 fn contexts(opened: &dyn Opened) -> Vec<Vec<(&'static str, SettingValue)>> {
     let settings = opened.settings();
     let choices = settings
@@ -132,7 +132,7 @@ fn the_command_line_the_page_and_a_stream_have_the_same_settings() {
             let help = on_line.get_help().map(ToString::to_string).unwrap_or_default();
             let control = setting.control();
             let label = control["label"].as_str().unwrap_or_default();
-            // A switch that is on is said to be turned off: "Do not use …" of "Use …".
+            // A switch that is on is described as turned off: "Do not use …" for "Use …".
             let is_in = |help: &str| help.to_lowercase().contains(&label.to_lowercase());
             assert!(is_in(&help) && !label.is_empty(), "{name}: {help:?}, {label:?}");
             if let Kind::Choice { of, .. } | Kind::Set { of } = &setting.kind {
@@ -153,7 +153,7 @@ fn the_command_line_the_page_and_a_stream_have_the_same_settings() {
                 }
             }
             match find(&live, &setting) {
-                // A file of the same name, which a stream has not, may stand beside it in a replay.
+                // A replay may describe a file of the same name as well, which a stream does not have.
                 Some(arg) if setting.in_live => {
                     let in_live = arg.get_help().map(ToString::to_string).unwrap_or_default();
                     assert!(is_in(&help) && is_in(&in_live), "{name}: {in_live:?}");
@@ -176,7 +176,7 @@ fn the_command_line_the_page_and_a_stream_have_the_same_settings() {
 fn every_setting_changes_the_page_or_says_why_not() {
     for system in ALL {
         let mut waiting: Vec<_> = system.settings().iter().map(|setting| setting.name).collect();
-        // What had no effect although nothing said so, and where: elsewhere it may have one.
+        // Settings without effect that give no reason, and where: in another context they may have one.
         let mut silent = Vec::new();
         for (recording, _) in system.synthetic() {
             let opened = open(system, recording);
@@ -206,7 +206,7 @@ fn every_setting_changes_the_page_or_says_why_not() {
                 }
             }
         }
-        // What is for files alone says so at every synthetic recording.
+        // A setting for files only gives that reason for every synthetic recording.
         for name in waiting {
             let never = silent.iter().find(|(silent, ..)| *silent == name);
             assert!(
@@ -252,7 +252,7 @@ fn the_command_gives_the_same_result_again() {
     }
 }
 
-/// A command as a shell takes it apart.
+/// Splits a command as a shell does.
 fn words(command: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut quoted = false;
@@ -294,7 +294,7 @@ fn the_firmware_literal_compiles() {
     check(&source);
 }
 
-/// Builds a crate of that source, with every crate of this workspace to depend on.
+/// Checks a crate with this source that depends on every crate of this workspace.
 fn check(source: &str) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().expect("the root");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("firmware-literals");
@@ -319,14 +319,14 @@ fn check(source: &str) {
     let output = Command::new(env!("CARGO"))
         .args(["check", "--quiet", "--offline"])
         .current_dir(&folder)
-        // Clippy may have checked there already what these crates need.
+        // Clippy may already have checked the dependencies there.
         .env("CARGO_TARGET_DIR", Path::new(env!("CARGO_TARGET_TMPDIR")).join(".."))
         .output()
         .expect("cargo runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// A zoom and a comparison ask for the same answer again: then no estimator runs.
+/// A zoom and a comparison request the same answer again, for which no estimator runs.
 #[test]
 fn what_was_answered_last_is_not_computed_again() {
     for system in ALL {

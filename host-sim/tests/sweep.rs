@@ -1,4 +1,5 @@
-//! Sweeps: whatever is cut, killed, done again and put together is a single run, to the bit; archives lose no recording.
+//! Tests of sweeps: shards that are cut, killed, repeated and merged equal a single run bit for bit; archives lose no
+//! recording.
 //!
 //! The long forms are ignored: `cargo test --release -p host-sim --test sweep -- --ignored --nocapture`.
 
@@ -20,7 +21,7 @@ fn host_sim(folder: &Path, arguments: &[&str]) -> Output {
     command.output().expect("the program runs")
 }
 
-/// What it prints.
+/// The standard output of the program.
 fn printed(folder: &Path, arguments: &[&str]) -> String {
     let output = host_sim(folder, arguments);
     let complaint = String::from_utf8_lossy(&output.stderr);
@@ -37,14 +38,14 @@ fn refusal(folder: &Path, arguments: &[&str]) -> String {
     sentence
 }
 
-/// A folder with a plan.
+/// A temporary folder with a plan.
 fn with_plan(text: &str) -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("plan.toml"), text).expect("a plan");
     folder
 }
 
-/// Computes all shards of a plan, each by a call of its own, the last first.
+/// Computes all shards of a plan by separate calls, the last first.
 fn in_shards(folder: &Path, count: u32, into: &str) {
     fs::create_dir_all(folder.join(into)).expect("a folder");
     for index in (0..count).rev() {
@@ -78,7 +79,7 @@ fn a_plan_of_one_experiment_prints_what_run_prints() {
     }
 }
 
-/// Without a number of trials the drone's experiment ends once it knows enough: the same for a sweep.
+/// Without a number of trials the drone's experiment ends once its precision is reached, and so does a sweep.
 #[test]
 fn trials_beyond_those_that_are_enough_do_not_count() {
     let folder = with_plan("system = 'drone'\n[settings]\nfilter = 'best'\nparticles = 50");
@@ -150,7 +151,7 @@ fn a_hole_an_overlap_or_another_plan_is_refused_by_name() {
     assert!(refusal(folder, &["sweep", "plan.toml"]).contains("boat"));
 }
 
-/// Resumed as often as it is killed, after moments that are not chosen for it.
+/// Kills and resumes a sweep a number of times, at arbitrary moments.
 fn killed(times: u32, plan: &str, longest: Duration) {
     let folder = with_plan(plan);
     let folder = folder.path();
@@ -170,7 +171,7 @@ fn killed(times: u32, plan: &str, longest: Duration) {
         sweep.wait().expect("it ends");
     }
     printed(folder, &["sweep", "plan.toml", "--out", "rows"]);
-    // Neither a draft nor half a file is left.
+    // Neither drafts nor partial files are left.
     let left = files(&folder.join("rows"));
     assert!(left.iter().all(|path| path.extension().is_some_and(|it| it == "csv")), "{left:?}");
     assert_eq!(printed(folder, &["merge", "rows", "--out", "all.csv"]), text);
@@ -233,7 +234,7 @@ fn an_engine_tells_which_shard() {
     assert!(summary.contains("approximately") && summary.contains("limit_m"), "{summary}");
 }
 
-/// Flights of a drone round a user, one in a hundred of them broken in one of several ways.
+/// Flights of a drone around a user, one in a hundred of which is broken in one of several ways.
 fn archive(folder: &Path, count: u32) -> u32 {
     let mut broken = 0;
     for number in 0..count {
@@ -264,7 +265,7 @@ fn no_recording_is_lost(count: u32) {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     let broken = archive(folder, count);
-    // Through a channel that is known, which takes no time.
+    // Through a known channel, which is quick to compute.
     let by = |more: &[&str]| {
         printed(folder, &[&["replay", "drone", "--environment", "urban"], more].concat())
     };
@@ -291,7 +292,7 @@ fn no_recording_is_lost(count: u32) {
     }
     seen.sort_unstable();
     assert_eq!(seen, (0..count).collect::<Vec<_>>());
-    // One of them by itself reports the same.
+    // A recording replayed by itself has the same report.
     let alone = by(&["--log", "7/flight-00007.csv", "--json"]);
     let alone: serde_json::Value = serde_json::from_str(&alone).expect("an object");
     let mut table = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());

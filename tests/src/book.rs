@@ -1,4 +1,4 @@
-//! The book's figures: those of the report, as files.
+//! Writes figures of the report as files for the book.
 
 use std::io;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use host_sim::figure::{Figure, svg};
 use host_sim::report::Chapter;
 
-/// Draws figures of a chapter into the book's folder: their names in the chapter, and their files'.
+/// Draws figures of a chapter into the book's folder; `files` pairs their ids in the chapter with file names.
 ///
 /// # Errors
 /// If the chapter has no such figure, or a file cannot be written.
@@ -21,7 +21,7 @@ pub fn draw(chapter: &Chapter, files: &[(&str, &str)]) -> io::Result<()> {
     Ok(())
 }
 
-/// Draws a figure into the book's folder, as its `id` is called.
+/// Draws a figure into the book's folder, in a file named after its `id`.
 ///
 /// # Errors
 /// If the file cannot be written.

@@ -1,5 +1,5 @@
-//! The common scenario on the host, as the images compute it: the extended filter, and what any other filter of
-//! the scenario starts from.
+//! The common scenario on the host, as the images compute it: the extended Kalman filter, and the initial state that
+//! other filters of the scenario share.
 
 use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian, SparseRow};
 use kestirim_scalar::{Components, Scalar};
@@ -7,23 +7,23 @@ use kestirim_uwb_ranging::expected_range;
 use nalgebra::SVector;
 use target_bench::streams::ANCHORS;
 
-/// Where the anchors are, m.
+/// The positions of the anchors, m.
 pub fn anchors<T: Scalar>() -> [SVector<T, 3>; 4] {
     ANCHORS.map(|[x, y]| SVector::from([x, y, 0.0].map(T::from_f64)))
 }
 
-/// The first estimate.
+/// The initial estimate.
 pub fn start<T: Scalar>() -> Gaussian<T, 4> {
     let mean = SVector::from([5.0, 4.0, 0.0, 0.0].map(T::from_f64));
     Gaussian::new(mean, Covariance::from_variances(&[T::ONE; 4]))
 }
 
-/// A step's motion with white acceleration of this density (m²/s³).
+/// The motion model of one step, with white acceleration of this density (m²/s³).
 pub fn motion<T: Scalar>(density: f64) -> ConstantVelocity<T, 2> {
     ConstantVelocity::new(T::from_f64(0.1), T::from_f64(density))
 }
 
-/// The row and the expectation of a range.
+/// The measurement row and the expected value of a range.
 pub fn expected<T: Scalar>(mean: &SVector<T, 4>, anchor: &SVector<T, 3>) -> (SparseRow<T, 2>, T) {
     let [x, y, ..] = *mean.as_array();
     let range = expected_range(&SVector::from([x, y]), T::ZERO, anchor);
@@ -46,7 +46,7 @@ impl<T: Scalar> Ekf<T> {
         Self { anchors: anchors(), motion: motion(0.25), variance, estimate: start() }
     }
 
-    /// Takes in the ranges of a step (m) and answers with the states after it.
+    /// Updates with the ranges of a step (m) and returns the states after it.
     ///
     /// # Panics
     /// A range is not finite.

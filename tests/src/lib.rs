@@ -1,4 +1,4 @@
-//! What the tests across crates share.
+//! Helpers shared by the tests across crates.
 
 pub mod book;
 pub mod common_scenario;
@@ -11,7 +11,7 @@ pub mod recordings;
 pub mod robot;
 pub use target_bench::uav;
 
-/// The example of the first page compiles.
+/// Compiles the example of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 struct FirstPage;

@@ -1,4 +1,4 @@
-//! Recorded walks with truth, from `../shared/data/pedestrian` beside the repository.
+//! Recorded walks with ground truth, from `../shared/data/pedestrian` beside the repository.
 
 use std::env;
 use std::io::{self, Write};
@@ -8,9 +8,9 @@ use host_sim::systems::pedestrian::account::accuracy::against_footprints;
 use host_sim::systems::pedestrian::recording::{log, resample, truth};
 use kestirim_replay::pedestrian::{Options, walk};
 
-/// The walks with footprints measured by a ruler that are not fast …
+/// The walks at ordinary speed whose footprints were measured with a ruler.
 pub const GCP: [u32; 8] = [31, 36, 41, 46, 48, 57, 72, 81];
-/// … and those that are.
+/// The fast walks whose footprints were measured with a ruler.
 pub const GCP_FAST: [u32; 3] = [43, 56, 74];
 
 /// The folder of the recorded walks.
@@ -21,8 +21,9 @@ pub fn folder() -> Option<PathBuf> {
     folder_of("pedestrian")
 }
 
-/// The folder of a system's recordings. `None` where it is absent, which is said; with
-/// `KESTIRIM_REQUIRE_DATA=1` a panic instead.
+/// The folder of a system's recordings.
+///
+/// Where it is absent, prints a notice and returns `None`, or panics with `KESTIRIM_REQUIRE_DATA=1`.
 ///
 /// # Panics
 /// See above.
@@ -39,19 +40,19 @@ pub fn folder_of(system: &str) -> Option<PathBuf> {
     None
 }
 
-/// How a group of walks came out.
+/// The results of a group of walks.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// |error| of each path length, %.
+    /// The absolute error of each path length, %.
     pub path_errors: Vec<f64>,
-    /// Footprint RMSE of each, m.
+    /// The RMSE of each walk's footprints, m.
     pub rmse_m: Vec<f64>,
-    /// The same over the root mean square standard deviation of each.
+    /// The RMSE of each walk's footprints over its root mean square standard deviation.
     pub over_sigma: Vec<f64>,
 }
 
 impl Group {
-    /// Tracks walks given as log and truth, averaged down to a rate if there is one, and prints each.
+    /// Tracks walks given as log and truth, averaged down to a rate if one is given, and prints each.
     ///
     /// # Panics
     /// A recording cannot be read: those beside the repository can.
@@ -87,13 +88,13 @@ impl Group {
     }
 }
 
-/// Log and truth of walks over measured footprints.
+/// The logs and truths of the walks over measured footprints.
 pub fn gcp(folder: &Path, experiments: &[u32]) -> Vec<(PathBuf, PathBuf)> {
     let file = |number, kind| folder.join(format!("gcp/exp{number}_{kind}.csv"));
     experiments.iter().map(|&number| (file(number, "imu"), file(number, "gcp"))).collect()
 }
 
-/// Log and truth of the walks seen by cameras.
+/// The logs and truths of the walks recorded by cameras.
 ///
 /// # Panics
 /// Their folder is absent.

@@ -1,4 +1,4 @@
-//! Recorded ranges with truth, from `../shared/data/robot` beside the repository.
+//! Recorded ranges with ground truth, from `../shared/data/robot` beside the repository.
 
 use std::path::Path;
 
@@ -16,22 +16,22 @@ use kestirim_replay::robot::{
 };
 use kestirim_uwb_tracker::Config;
 
-/// A change of the default tracker's constants.
+/// A change to the default tracker's configuration.
 pub type Change = fn(&mut Config<f64>);
 
-/// How ranges are tracked: the same for every recording.
+/// A way of tracking ranges, the same for every recording.
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
-    /// Which tracker.
+    /// The tracker.
     pub tracker: TrackerKind,
-    /// In which number type.
+    /// The number type.
     pub scalar: ScalarKind,
-    /// With which constants changed, if any: of the default tracker in `f64`.
+    /// A change to the configuration, if any: only for the default tracker in `f64`.
     pub change: Option<Change>,
 }
 
 impl Method {
-    /// What host-sim does unless told otherwise.
+    /// The defaults of host-sim.
     pub const DEFAULT: Self =
         Self { tracker: TrackerKind::Default, scalar: ScalarKind::F32, change: None };
 
@@ -53,7 +53,7 @@ impl Method {
     }
 }
 
-/// A recording of a tag that moves, or stands.
+/// A recording of a moving or stationary tag.
 #[derive(Clone, Debug)]
 pub struct Recording {
     anchors: Anchors,
@@ -63,8 +63,8 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Reads a folder of the recordings, with its IMU or wheels if it has them. The tag's height is the mean
-    /// of the true one.
+    /// Reads a folder of the recordings, including IMU or wheels if it has them. The tag's height is the mean of the
+    /// true height.
     ///
     /// # Panics
     /// It cannot be read: those beside the repository can.
@@ -90,7 +90,7 @@ impl Recording {
         Self { anchors, sensors, truth, height_m }
     }
 
-    /// What each anchor measures too long, m, from the first `seconds` of the recording.
+    /// The measured bias of each anchor, m, from the first `seconds` of the recording.
     pub fn biases(&self, seconds: f64) -> Vec<f64> {
         let mut residuals = Residuals::new(&self.anchors);
         let start_us = self.sensors.ranges.first().map_or(0, |row| row.time_us);
@@ -103,7 +103,7 @@ impl Recording {
         residuals.calibrations(&self.anchors).iter().map(|anchor| anchor.bias_m).collect()
     }
 
-    /// The same with every twentieth range replaced by what radios have been seen to say.
+    /// The recording with every twentieth range replaced by outliers that radios have been observed to report.
     #[must_use]
     pub fn spoiled(&self) -> Self {
         let wild = [337.0, -143.0, 60.0, 100.0, 12.0, 0.2].iter().cycle();
@@ -134,7 +134,7 @@ impl Recording {
     }
 }
 
-/// The 90 points of `lias_static_814`, each with 50 epochs.
+/// The 90 points of `lias_static_814`, with 50 epochs each.
 #[derive(Clone, Debug)]
 pub struct Points {
     anchors: Anchors,
@@ -142,10 +142,10 @@ pub struct Points {
 }
 
 impl Points {
-    /// Epochs of 0.1 s that are used.
+    /// The duration of the epochs that are used, µs; an epoch takes 0.1 s.
     const EPOCHS_US: i64 = 50 * 100_000;
 
-    /// Reads them, with the four anchors in the corners or all eight.
+    /// Reads the points, with either the four anchors in the corners or all eight.
     ///
     /// # Panics
     /// They cannot be read.
@@ -173,14 +173,14 @@ impl Points {
         Self { points: points.collect(), anchors }
     }
 
-    /// Only the points whose name starts so, or all but these.
+    /// The points whose names start with `prefix`, or all others if not `inside`.
     #[must_use]
     pub fn group(&self, prefix: &str, inside: bool) -> Self {
         let kept = self.points.iter().filter(|(name, ..)| name.starts_with(prefix) == inside);
         Self { anchors: self.anchors.clone(), points: kept.cloned().collect() }
     }
 
-    /// What each anchor measures too long, m.
+    /// The measured bias of each anchor, m.
     pub fn biases(&self) -> Vec<f64> {
         let mut residuals = Residuals::new(&self.anchors);
         for (_, place, rows) in &self.points {
@@ -193,7 +193,7 @@ impl Points {
         residuals.calibrations(&self.anchors).iter().map(|anchor| anchor.bias_m).collect()
     }
 
-    /// Errors of the last positions.
+    /// The errors of the last position at each point.
     ///
     /// # Panics
     /// The tracker cannot be built, or finds no position at all.
@@ -208,7 +208,7 @@ impl Points {
     }
 }
 
-/// The runs in which a person stands in the way of an anchor, each with the free run at the same spot.
+/// The runs in which a person blocks an anchor, each with the unobstructed run at the same spot.
 pub const BLOCKED: [(&str, &str); 8] = [
     ("trek_4vba0", "trek_4vnm"),
     ("trek_4vba1", "trek_4vnm"),
@@ -220,7 +220,7 @@ pub const BLOCKED: [(&str, &str); 8] = [
     ("trek_4vba32", "trek_4vnm2"),
 ];
 
-/// Root mean square errors of [`BLOCKED`], m, calibrated on the free runs or not at all.
+/// The root mean square errors of [`BLOCKED`], m, with biases from the unobstructed runs or without calibration.
 pub fn blocked(folder: &Path, method: Method, calibrated: bool) -> Vec<f64> {
     BLOCKED
         .iter()

@@ -9,17 +9,17 @@ use kestirim_scalar::Scalar;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AdaptiveKalman<T: Scalar, const N: usize, const M: usize> {
     estimate: Gaussian<T, N>,
-    /// The mean after the last prediction, from which eq. 19 measures Δx.
+    /// The estimate after the last prediction, from whose mean eq. 19 measures Δx.
     predicted: Gaussian<T, N>,
     process_noise: ProcessNoise<T, N>,
-    /// The noise of each measurement, beside how it is learnt: both are looked up at once.
+    /// The noise of each measurement with its learning rule, side by side because both are looked up together.
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     measurements: [(MeasurementNoise<T>, Learning<T>); M],
 }
 
 impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
-    /// Starts from an estimate, the process noise, and of each measurement a variance (its unit squared),
-    /// moved into the limits of how it is learnt.
+    /// Starts from an estimate, the process noise and, for each measurement, a variance (in its unit squared)
+    /// that is clamped to the limits of its learning rule.
     pub fn new(
         estimate: Gaussian<T, N>,
         process_noise: ProcessNoise<T, N>,
@@ -39,7 +39,7 @@ impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
         &self.estimate
     }
 
-    /// The process noise as learnt so far.
+    /// The process noise as learnt so far, over one step.
     #[inline]
     pub fn process_noise(&self) -> &ProcessNoise<T, N> {
         &self.process_noise
@@ -51,8 +51,8 @@ impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
         self.measurements.map(|(noise, _)| noise)
     }
 
-    /// Begins an epoch: adapts Q to what the last one changed, then moves on by `process`, which
-    /// brings no noise of its own.
+    /// Begins an epoch: adapts Q to what the updates of the last epoch changed, then predicts by `process`, which
+    /// must add no noise of its own.
     ///
     /// # Errors
     /// [`Error::Estimate`]; the filter is untouched.
@@ -85,8 +85,8 @@ impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
         Ok(report)
     }
 
-    /// The same without learning: for an epoch whose measurements only just determine the state, in
-    /// which every residual is small and means nothing.
+    /// [`AdaptiveKalman::update`] without learning, for an epoch whose measurements only just determine the state, so
+    /// that every residual is small and carries no information.
     ///
     /// # Errors
     /// As [`AdaptiveKalman::update`].
@@ -102,7 +102,7 @@ impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
     }
 }
 
-/// A process with the adapted Q.
+/// A process followed by the addition of the learnt Q.
 struct WithNoise<'a, P, T: Scalar, const N: usize> {
     process: &'a P,
     noise: &'a ProcessNoise<T, N>,

@@ -1,17 +1,17 @@
 use core::fmt;
 
-/// Reason for which a step was refused. The filter is as it was before the call.
+/// Reason why a step was refused. The filter is as it was before the call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Error {
-    /// The estimate refused it.
+    /// The underlying estimate refused the step.
     Estimate(kestirim_kalman::Error),
-    /// No measurement has this number.
+    /// No measurement has this index.
     NoSuchMeasurement,
-    /// A forgetting factor is not in 0..=1, or limits of a variance are negative, out of order or not
-    /// finite.
+    /// A forgetting factor is not in 0..=1, or the limits of a variance are negative, out of order
+    /// or not finite.
     InvalidLearning,
 }
 

@@ -1,7 +1,7 @@
 use crate::Error;
 use kestirim_scalar::Scalar;
 
-/// Rule by which a variance is learnt: a forgetting factor, and limits between which it stays.
+/// Rule by which a variance is learnt: a forgetting factor, and the limits of the variance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -12,7 +12,7 @@ pub struct Learning<T> {
 }
 
 impl<T: Scalar> Learning<T> {
-    /// v ← α v + (1 − α) sample, kept within `least..=most`.
+    /// The rule v ← α v + (1 − α) sample, kept within `least..=most`.
     ///
     /// α = 0.95 remembers about 20 samples; 1 learns nothing.
     ///
@@ -28,15 +28,15 @@ impl<T: Scalar> Learning<T> {
         }
     }
 
-    /// The same rule with a least variance `factor` times as large, up to the greatest.
+    /// The same rule with both limits `factor` times as large.
     #[inline]
     #[must_use]
     pub fn raised(&self, factor: T) -> Self {
         Self { least: self.least * factor, most: self.most * factor, ..*self }
     }
 
-    /// The variance after one more sample: of no more than the largest variance, so that a square that is
-    /// out of range does no harm.
+    /// The variance after one more sample. Samples are clamped to the largest variance, so that a square that
+    /// overflows does no harm.
     #[inline(always)]
     pub fn learn(&self, variance: T, sample: T) -> T {
         let sample = sample.min(self.most);
@@ -44,7 +44,7 @@ impl<T: Scalar> Learning<T> {
         T::finish(T::mac(sum, T::ONE - self.forgetting, sample)).max(self.least)
     }
 
-    /// The nearest variance within the limits.
+    /// The variance clamped to the limits.
     #[inline]
     pub fn limited(&self, variance: T) -> T {
         variance.clamp(self.least, self.most)

@@ -5,8 +5,9 @@ use nalgebra::SVector;
 
 /// The diagonal process noise Q of N states, learnt from how far updates move them.
 ///
-/// Q ← α Q + (1 − α) diag(Δx²) with Δx = K ν, what an epoch's updates changed (eq. 19, its
-/// diagonal), each entry within its limits: with a floor, the filter never stops listening.
+/// Q ← α Q + (1 − α) diag(Δx²) with Δx = K ν, the change by an epoch's updates (the diagonal of eq.
+/// 19), each entry within its limits. With a lower limit, the filter never stops following its
+/// measurements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -25,7 +26,7 @@ pub struct ProcessNoise<T: Scalar, const N: usize> {
 }
 
 impl<T: Scalar, const N: usize> ProcessNoise<T, N> {
-    /// Variances to start from, a step each, moved into their limits.
+    /// Starts from variances over one step, clamped to their limits.
     pub fn new(variances: [T; N], learning: [Learning<T>; N]) -> Self {
         let mut limited = variances;
         for (variance, learning) in limited.iter_mut().zip(&learning) {
@@ -34,19 +35,19 @@ impl<T: Scalar, const N: usize> ProcessNoise<T, N> {
         Self { variances: limited, learning }
     }
 
-    /// The diagonal of Q, a step each.
+    /// The diagonal of Q, over one step.
     #[inline]
     pub fn variances(&self) -> &[T; N] {
         &self.variances
     }
 
-    /// Q.
+    /// Q as a covariance, over one step.
     #[inline]
     pub fn covariance(&self) -> Covariance<T, N> {
         Covariance::from_variances(&self.variances)
     }
 
-    /// Learns from Δx, what the updates of one epoch changed.
+    /// Learns from Δx, the change of the mean by the updates of one epoch.
     #[inline]
     pub fn learn(&mut self, moved: &SVector<T, N>) {
         for ((variance, learning), &moved) in

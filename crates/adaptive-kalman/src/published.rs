@@ -11,10 +11,10 @@ use nalgebra::{SMatrix, SVector};
 ///
 /// Eq. 18 is a difference: with everyday constants it makes R indefinite in nine updates of ten,
 /// where a textbook implementation diverges and this one answers
-/// [`Error::Estimate`]`(`[`NotPositive`](kestirim_kalman::Error::NotPositive)`)`. Where R stays positive
-/// it does so because it swallows the innovation: R becomes large in the very direction in which
-/// the estimate is wrong, and the filter stays where it was started, reporting a small P and a
-/// healthy NIS. That is how a filter started at the surveyed point "measures" it to 2 cm.
+/// [`Error::Estimate`]`(`[`NotPositive`](kestirim_kalman::Error::NotPositive)`)`. Where R stays positive,
+/// it does so by absorbing the innovation: R becomes large in exactly the direction in which
+/// the estimate is wrong, and the filter stays where it was started, reporting a small P and an
+/// inconspicuous NIS. That is how a filter started at the surveyed point "measures" it to 2 cm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -27,7 +27,7 @@ pub struct PublishedAdaptiveKalman<T: Scalar, const N: usize, const M: usize> {
 }
 
 impl<T: Scalar, const N: usize, const M: usize> PublishedAdaptiveKalman<T, N, M> {
-    /// Starts from x̂₀, P₀, Q₀ (a step), R₀ and the forgetting factors of eqs 19 and 18.
+    /// Starts from x̂₀, P₀, Q₀ (over one step), R₀ and the forgetting factors of eqs 19 and 18.
     ///
     /// # Errors
     /// [`Error::InvalidLearning`] if a factor is not in 0..=1.
@@ -57,12 +57,12 @@ impl<T: Scalar, const N: usize, const M: usize> PublishedAdaptiveKalman<T, N, M>
         &self.estimate
     }
 
-    /// R as adapted so far.
+    /// R as adapted so far, the covariance of the measurement noise.
     pub fn measurement_noise(&self) -> &Covariance<T, M> {
         &self.measurement_noise
     }
 
-    /// Moves on by `process`, which brings no noise of its own, and adds Q.
+    /// Predicts by `process`, which must add no noise of its own, and adds Q.
     ///
     /// # Errors
     /// [`Error::Estimate`]; the filter is untouched.
@@ -80,7 +80,7 @@ impl<T: Scalar, const N: usize, const M: usize> PublishedAdaptiveKalman<T, N, M>
     /// Takes in M measurements with innovations ν = z − h(x) and rows H, and adapts R and Q.
     ///
     /// # Errors
-    /// [`Error::Estimate`]: with `NotPositive` eq. 18 has made R indefinite. The filter is untouched.
+    /// [`Error::Estimate`], with `NotPositive` if eq. 18 has made R indefinite. The filter is untouched.
     pub fn update(
         &mut self,
         rows: &SMatrix<T, M, N>,
@@ -95,7 +95,7 @@ impl<T: Scalar, const N: usize, const M: usize> PublishedAdaptiveKalman<T, N, M>
         };
         next.measurement_noise =
             blend(&self.measurement_noise, self.forgetting_measurement, sample);
-        // K ν is what the update moved.
+        // K ν is the change of the mean by the update.
         let moved = *(next.estimate.mean - self.estimate.mean).as_array();
         next.process_noise =
             blend(&self.process_noise, self.forgetting_process, |i, j| moved[i] * moved[j]);

@@ -1,4 +1,4 @@
-//! What is learnt, what is never lost, and what the published form does, in every scalar.
+//! What is learnt, which guarantees hold, and how the published form fails, in every scalar.
 
 use kestirim_adaptive_kalman::{
     AdaptiveKalman, Error, Learning, ProcessNoise, PublishedAdaptiveKalman,
@@ -8,14 +8,14 @@ use kestirim_scalar::{Components, Q12_20, Scalar};
 use nalgebra::{SMatrix, SVector, matrix, vector};
 use proptest::prelude::*;
 
-/// Two coordinates that stay where they are.
+/// A process of two coordinates that do not move.
 struct Still;
 
 impl<T: Scalar> Process<T, 2> for Still {
     fn advance(&self, _: &mut Gaussian<T, 2>) {}
 }
 
-/// Four measurements of two states, in directions all round.
+/// Four measurements of two states, in directions all around.
 const ROWS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [0.6, 0.8], [-0.8, 0.6]];
 
 fn row<T: Scalar>(index: usize) -> SparseRow<T, 2> {
@@ -31,7 +31,8 @@ fn adaptive<T: Scalar>() -> AdaptiveKalman<T, 2, 4> {
     AdaptiveKalman::new(start, process, [n(0.01); 4], [learning; 4])
 }
 
-/// Feeds 400 epochs in which measurement 3 reads 1 m too much, and returns where the filter ends.
+/// Feeds 400 epochs in which measurement 3 reads 1 m too long, and returns the filter and its final
+/// error.
 fn blocked<T: Scalar>(learn: bool) -> (AdaptiveKalman<T, 2, 4>, f64) {
     let mut filter = adaptive::<T>();
     for k in 0..400 {
@@ -153,7 +154,7 @@ fn one_published_step_is_the_papers_equations() {
     let eq_18 = r * 0.7 + (innovation * innovation.transpose() - h * p * h.transpose()) * 0.3;
     assert!((filter.measurement_noise().to_matrix() - eq_18).abs().max() < 1e-12);
     assert!((filter.estimate().mean - gain * innovation).abs().max() < 1e-12);
-    // Q shows in the next prediction.
+    // The adapted Q takes effect in the next prediction.
     let posterior = filter.estimate().covariance.to_matrix();
     filter.predict(&Still).unwrap();
     let moved = gain * innovation;
@@ -173,7 +174,7 @@ fn the_published_form_is_refused_when_it_turns_indefinite() {
 }
 
 fn check_frozen<T: Scalar>() {
-    // The place is 0.5 m from the start, and everything says so, for 50 epochs.
+    // The true position is 0.5 m from the start, and every measurement says so, for 50 epochs.
     let (mut filter, h) = (published::<T>(1e-4, 3e-5, 0.1, 0.95), rows::<T>());
     let truth = vector![0.3, -0.4].map(T::from_f64);
     for _ in 0..50 {

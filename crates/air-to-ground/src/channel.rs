@@ -2,21 +2,21 @@ use kestirim_scalar::Scalar;
 
 use crate::{Environment, Error, Likelihood, Measurement, Propagation};
 
-/// The path loss between a drone and a user on the ground: free space, and what the buildings add with and
+/// The path loss between a drone and a user on the ground: free-space loss plus the excess loss of buildings, with and
 /// without a line of sight (Al-Hourani's model; the thesis' section 2.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Channel<T> {
-    /// b per radian of elevation.
+    /// The parameter b, per radian of elevation.
     b: T,
-    /// a·exp(a·b): the odds against a line of sight at the horizon.
+    /// The odds against a line of sight at the horizon: a·exp(a·b).
     odds: T,
     line_of_sight: Shadowing<T>,
     obstructed: Shadowing<T>,
 }
 
-/// One kind of propagation in the form in which a likelihood needs it.
+/// One kind of propagation, in the form that the likelihood needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -25,11 +25,11 @@ struct Shadowing<T> {
     loss_at_one_metre: T,
     /// ln 1/α.
     log_inverse_sigma: T,
-    /// Logarithm of the factor before the density of a unit deviation.
+    /// Logarithm of the normalising factor of the density, for unit standard deviation.
     log_weight: T,
-    /// β per radian of elevation.
+    /// The decay β per radian of elevation.
     decay: T,
-    /// −ln of the smallest deviation.
+    /// Upper limit of ln 1/σ: −ln of the smallest standard deviation.
     most_precise: T,
 }
 
@@ -43,9 +43,9 @@ pub struct PathLoss<T> {
     pub line_of_sight_mean: T,
     /// Standard deviation with a line of sight, dB.
     pub line_of_sight_sigma: T,
-    /// Mean loss without, dB.
+    /// Mean loss without a line of sight, dB.
     pub obstructed_mean: T,
-    /// Standard deviation without, dB.
+    /// Standard deviation without a line of sight, dB.
     pub obstructed_sigma: T,
 }
 
@@ -56,11 +56,11 @@ impl<T: Scalar> PathLoss<T> {
         self.obstructed_mean + (self.line_of_sight_mean - self.obstructed_mean) * p
     }
 
-    /// Standard deviation over both, dB.
+    /// Standard deviation over both kinds of propagation, dB.
     pub fn sigma(&self) -> T {
         let p = self.line_of_sight_probability;
         let between = (p * (T::ONE - p)).sqrt() * (self.obstructed_mean - self.line_of_sight_mean);
-        // √(p·σ² + …): as norms, whose squares do not overflow in fixed point.
+        // √(p·σ² + …), computed as norms, whose squares do not overflow in fixed point.
         T::norm(&[
             p.sqrt() * self.line_of_sight_sigma,
             (T::ONE - p).sqrt() * self.obstructed_sigma,
@@ -70,11 +70,11 @@ impl<T: Scalar> PathLoss<T> {
 }
 
 impl<T: Scalar> Channel<T> {
-    /// A channel at a wavelength (m): 0.15 m is 2 GHz.
+    /// Creates a channel for an environment at a wavelength (m); 0.15 m corresponds to 2 GHz.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; [`Error::NotPositive`] for a wavelength, a deviation or an a that is not
-    /// above zero.
+    /// [`Error::NotFinite`]; [`Error::NotPositive`] for a wavelength, a standard deviation or a parameter a that is
+    /// not positive.
     #[inline]
     pub fn new(environment: &Environment<T>, wavelength: T) -> Result<Self, Error> {
         let Environment { a, b, line_of_sight, obstructed } = *environment;
@@ -96,13 +96,13 @@ impl<T: Scalar> Channel<T> {
         if finite { Ok(channel) } else { Err(Error::NotFinite) }
     }
 
-    /// The same channel with no deviation below `sigma` (dB).
+    /// The same channel with all standard deviations limited to at least `sigma` (dB).
     ///
-    /// Right below the drone the model's shadowing is a tenth of a decibel, which no radio measures. A filter
-    /// that trusts it diverges on the first decibel of unmodelled error.
+    /// Directly below the drone, the model's shadowing is a tenth of a decibel, which no radio resolves. A filter that
+    /// trusts it diverges at the first decibel of unmodelled error.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; [`Error::NotPositive`] if it is not above zero.
+    /// [`Error::NotFinite`]; [`Error::NotPositive`] if `sigma` is not positive.
     #[inline]
     pub fn with_least_sigma(&self, sigma: T) -> Result<Self, Error> {
         if !sigma.is_finite() {
@@ -117,10 +117,10 @@ impl<T: Scalar> Channel<T> {
         Ok(Self { line_of_sight, obstructed: limited(&self.obstructed), ..*self })
     }
 
-    /// Path loss at a horizontal distance and a height (m) of the drone from the user.
+    /// The path loss at a horizontal distance (m) and a height (m) of the drone relative to the user.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; [`Error::NotPositive`] for a height that is not above zero.
+    /// [`Error::NotFinite`]; [`Error::NotPositive`] for a height that is not positive.
     pub fn path_loss(&self, horizontal_distance: T, height: T) -> Result<PathLoss<T>, Error> {
         if !T::all_finite(&[horizontal_distance, height]) {
             return Err(Error::NotFinite);
@@ -139,18 +139,17 @@ impl<T: Scalar> Channel<T> {
         })
     }
 
-    /// Logarithm of the density (per dB) of a measured loss if the user is there (eq. 2.11).
+    /// Logarithm of the density (per dB) of the measured loss if the user is at `user` (eq. 2.11).
     ///
-    /// Beyond 127 standard deviations it does not fall any further. Without branches, so that a loop over
-    /// particles becomes vector instructions, and never underflowing as the published sum of densities does.
-    /// What is not finite in `user` gives what is not finite.
+    /// It does not decrease any further beyond 127 standard deviations. It has no branches, so that a loop over
+    /// particles vectorises, and never underflows, unlike the published sum of densities. The result is not finite if
+    /// `user` is not.
     #[inline(always)]
     pub fn log_likelihood(&self, measurement: &Measurement<T>, user: [T; 2]) -> T {
         let distance = measurement.horizontal_distance(user);
         let (elevation, distance_loss) = geometry(distance, measurement.height());
         let excess = measurement.loss() - distance_loss;
-        // The two terms of the mixture, each without the factor P_LoS, which is taken out of both:
-        // P_NLoS = odds · P_LoS.
+        // The two terms of the mixture, each without the common factor P_LoS: P_NLoS = odds · P_LoS.
         let seen = self.line_of_sight.log_density(excess, elevation);
         let fading = self.b * elevation;
         let hidden = self.obstructed.log_density(excess, elevation) - fading;
@@ -195,12 +194,12 @@ impl<T: Scalar> Shadowing<T> {
         (-self.log_precision(elevation)).exp()
     }
 
-    /// ln of the normal density of what remains of a loss without that of the distance.
+    /// Logarithm of the normal density of the excess of a loss over the distance-dependent part.
     #[inline(always)]
     fn log_density(&self, excess: T, elevation: T) -> T {
         let log_precision = self.log_precision(elevation);
         let sigmas = (excess - self.loss_at_one_metre) * log_precision.exp();
-        // 127²/2 is a number in every format that can hold a kilometre.
+        // 127²/2 is representable in every format that can hold a kilometre.
         let sigmas = sigmas.abs().min(T::from_f64(127.0));
         self.log_weight + log_precision - sigmas * (sigmas * T::HALF)
     }

@@ -2,25 +2,25 @@ use kestirim_scalar::Scalar;
 
 use crate::{Channel, Error, Likelihood, Measurement};
 
-/// A channel of which some measurements say nothing: a robust likelihood.
+/// A channel with a robust likelihood, for measurements of which some carry no information.
 ///
-/// A share ε of them is taken to be anything within 100 dB, so that a single wild measurement costs no more
-/// than ln(100/ε) however far it is from all that the channel expects.
+/// A share ε of the measurements is assumed uniform over 100 dB, so that a single outlier costs no more than
+/// ln(100/ε), however far it is from what the channel expects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Contaminated<T> {
     channel: Channel<T>,
-    /// ln(1 − ε) and ln(ε/100 dB).
+    /// The log-weights ln(1 − ε) of good and ln(ε/100 dB) of bad measurements.
     log_good: T,
     log_bad: T,
 }
 
 impl<T: Scalar> Contaminated<T> {
-    /// A channel with this share of bad measurements, between 0 and 1.
+    /// Creates a channel with this share of bad measurements, between 0 and 1.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; [`Error::NotPositive`] if it is not between them.
+    /// [`Error::NotFinite`]; [`Error::NotPositive`] if the share is not between 0 and 1.
     #[inline]
     pub fn new(channel: Channel<T>, share: T) -> Result<Self, Error> {
         if !share.is_finite() {

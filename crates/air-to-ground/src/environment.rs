@@ -1,26 +1,26 @@
 use kestirim_scalar::Scalar;
 
-/// Loss and shadowing beyond free space of one kind of propagation: with or without a line of sight.
+/// The excess loss and shadowing, beyond free space, of one kind of propagation: with or without a line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Propagation<T> {
-    /// Mean loss beyond that of free space μ, dB.
+    /// Mean excess loss μ over free space, dB.
     pub excess_loss: T,
-    /// Standard deviation of the shadowing at the horizon α, dB.
+    /// Standard deviation α of the shadowing at the horizon, dB.
     pub sigma: T,
-    /// Decay of that deviation with the elevation β, per degree: σ(θ) = α·exp(−β·θ) (eqs 2.7, 2.8).
+    /// Decay β of the standard deviation with elevation, per degree: σ(θ) = α·exp(−β·θ) (eqs 2.7, 2.8).
     pub sigma_decay: T,
 }
 
-/// Propagation constants of a kind of built environment.
+/// Propagation constants of a type of built environment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Environment<T> {
-    /// a of the probability of a line of sight 1/(1 + a·exp(−b·(θ − a))), θ in degrees (eq. 2.1).
+    /// The parameter a of the line-of-sight probability 1/(1 + a·exp(−b·(θ − a))), θ in degrees (eq. 2.1).
     pub a: T,
-    /// b of the same, per degree.
+    /// The parameter b of the line-of-sight probability, per degree.
     pub b: T,
     /// Propagation with a line of sight.
     pub line_of_sight: Propagation<T>,
@@ -28,9 +28,8 @@ pub struct Environment<T> {
     pub obstructed: Propagation<T>,
 }
 
-/// Losses and shadowing are those of the thesis' Table 2.8 (2 GHz), a and b those of Al-Hourani, Kandeepan
-/// and Lardner, "Optimal LAP altitude for maximum coverage", IEEE Wireless Communications Letters 3(6),
-/// 2014.
+/// Excess losses and shadowing are those of the thesis' Table 2.8 (2 GHz), a and b those of Al-Hourani, Kandeepan and
+/// Lardner, "Optimal LAP altitude for maximum coverage", IEEE Wireless Communications Letters 3(6), 2014.
 impl<T: Scalar> Environment<T> {
     /// Suburbs and villages.
     #[inline]
@@ -44,7 +43,7 @@ impl<T: Scalar> Environment<T> {
         Self::new([9.61, 0.16], [1.0, 10.39, 0.05], [20.0, 29.6, 0.03])
     }
 
-    /// A city whose houses stand close together.
+    /// A city with closely spaced houses.
     #[inline]
     pub fn dense_urban() -> Self {
         Self::new([12.08, 0.11], [1.6, 8.96, 0.04], [23.0, 35.97, 0.04])

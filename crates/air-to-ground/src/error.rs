@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Reason for which a model has no value.
+/// The reason why a model has no value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -8,9 +8,9 @@ use core::fmt;
 pub enum Error {
     /// A number is NaN, infinite or on a rail of fixed point.
     NotFinite,
-    /// A height, a wavelength, a deviation or a speed that must be above zero is not.
+    /// A height, a wavelength, a standard deviation or a speed is not positive.
     NotPositive,
-    /// No radio measures this loss: beyond ±300 dB.
+    /// The path loss is beyond ±300 dB, which no radio measures.
     ImplausibleLoss,
 }
 

@@ -4,20 +4,20 @@ use kestirim_scalar::Scalar;
 
 use crate::Measurement;
 
-/// Degrees of freedom of Student's distribution: tails as antenna nulls and buildings make them.
+/// Degrees of freedom of Student's t-distribution, whose tails represent antenna nulls and buildings.
 const FREEDOM: f64 = 3.0;
 /// Scale of the distribution, dB (a standard deviation of 6 dB): open ground seen from some tens of metres.
 const SCALE: f64 = 3.5;
-/// Least scale, dB: receivers count in halves of decibels.
+/// Smallest scale, dB: receivers report levels in steps of half a decibel.
 const LEAST_SCALE: f64 = 0.5;
-/// Place, level and antennas are fitted, too: so many measurements do not count for the scale.
+/// Degrees of freedom subtracted when the scale is estimated: place, level and antennas are fitted, too.
 const FITTED: usize = 4;
-/// Power gain of a dipole along its axis, relative to its largest.
+/// Power gain of a dipole along its axis, relative to its maximum.
 const NULL_FILL: f64 = 0.1;
-/// The level's curvature is never taken for less than this share of that of perfect data.
+/// Lower limit of the level's curvature, as a share of that of perfect data.
 const LEAST_CURVATURE: f64 = 0.05;
 
-/// Number of a link's two antennas that are upright dipoles, whose pattern has nulls upwards and downwards.
+/// The number of a link's two antennas that are upright dipoles, whose pattern has nulls upwards and downwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -31,11 +31,11 @@ pub enum Antennas {
 }
 
 impl Antennas {
-    /// All values.
+    /// All variants.
     pub const ALL: [Self; 3] = [Self::Isotropic, Self::OneDipole, Self::TwoDipoles];
 }
 
-/// Prior distribution of the level at one metre.
+/// Prior distribution of the level received at one metre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -46,30 +46,31 @@ pub struct LevelPrior<T> {
     pub sigma: T,
 }
 
-/// A free-space channel of unknown level: received level = level at one metre − 20·log₁₀(distance) +
-/// antennas + noise.
+/// A free-space channel of unknown level: received level = level at one metre − 20·log₁₀(distance) + antenna gains +
+/// noise.
 ///
-/// The noise has Student's distribution (ν = 3, scale 3.5 dB or what [`FreeSpace::fitted`] finds); which antennas there are is not known either, so
-/// that all three kinds are averaged. Shadowing is alike along tens of metres, therefore measurements are not
-/// independent: their likelihood is raised to a power, (1 − ρ)/(1 + ρ) for neighbours of correlation
-/// ρ, wherever its width matters. At most 128 measurements are read. A composite likelihood (Varin, Reid and Firth, Statistica Sinica 21, 2011).
+/// The noise has Student's t-distribution (ν = 3, scale 3.5 dB or that of [`FreeSpace::fitted`]). The antennas are
+/// unknown, too: all three kinds are averaged. Shadowing is correlated over tens of metres, so measurements are not
+/// independent: wherever the width of their likelihood matters, it is raised to a power, (1 − ρ)/(1 + ρ) for
+/// neighbours with correlation ρ, as a composite likelihood (Varin, Reid and Firth, Statistica Sinica 21, 2011). At
+/// most 128 measurements are read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreeSpace<T> {
     level: Option<LevelPrior<T>>,
-    /// Scale of Student's distribution, dB.
+    /// Scale of Student's t-distribution, dB.
     scale: T,
 }
 
 /// Largest number of measurements that are read.
 const MOST: usize = 128;
 
-/// Geometry of the measurements seen from a place.
+/// The measurements as seen from a candidate place of the transmitter.
 struct Sight<T> {
-    /// Received level beyond one of 0 dB at one metre, dB.
+    /// Level at one metre that each measurement implies without antenna gains, dB.
     excess: [T; MOST],
-    /// Gain of one dipole in that direction, dB.
+    /// Gain of one upright dipole towards each measurement, dB.
     dipole: [T; MOST],
     count: usize,
 }
@@ -95,7 +96,7 @@ impl<T: Scalar> Sight<T> {
         sight
     }
 
-    /// Levels at one metre that the measurements suggest, dB.
+    /// The level at one metre that each measurement implies, dB.
     fn levels(&self, antennas: Antennas) -> impl Iterator<Item = T> {
         let dipoles = match antennas {
             Antennas::Isotropic => T::ZERO,
@@ -107,24 +108,24 @@ impl<T: Scalar> Sight<T> {
     }
 }
 
-/// Fit of the measurements to a transmitter at a place.
+/// A fit of the measurements to a transmitter at a place.
 #[derive(Clone, Copy)]
 struct Fit<T> {
-    /// The level that fits best, dB.
+    /// The best-fitting level, dB.
     level: T,
     /// ln ∫ likelihood^power · prior d(level).
     log_likelihood: T,
 }
 
 impl<T: Scalar> FreeSpace<T> {
-    /// A channel with a prior of its level; without one, all levels are equally likely.
+    /// Creates a channel with a prior of its level; without one, all levels are equally likely.
     pub fn new(level: Option<LevelPrior<T>>) -> Self {
         Self { level, scale: T::from_f64(SCALE) }
     }
 
-    /// The same channel with the scale of the noise that the measurements show if the transmitter is at `place`,
-    /// where that is smaller: cleaner flights than expected say more. A larger one is not believed, since a
-    /// wrong place shows it as well.
+    /// The same channel with the noise scale that the measurements show if the transmitter is at `place`, where that
+    /// is smaller: cleaner flights than expected are more informative. A larger scale is not adopted, since a wrong
+    /// place would cause it as well.
     pub fn fitted(&self, measurements: &[Measurement<T>], place: [T; 2]) -> Self {
         let sight = Sight::new(measurements, place);
         let Some(free) = sight.count.checked_sub(FITTED).filter(|&n| n > 0) else {
@@ -134,7 +135,7 @@ impl<T: Scalar> FreeSpace<T> {
         let free = T::from_binary(free as i32, 0);
         let freedom = T::from_f64(FREEDOM);
         let mut scale = self.scale;
-        // The likelihood's own fixed point: s² = Σ (ν + 1)·e²/(ν + e²/s²)/n.
+        // The likelihood's own fixed-point iteration: s² = Σ (ν + 1)·e²/(ν + e²/s²)/n.
         for _ in 0..8 {
             let mut sum = T::ZERO;
             for level in sight.levels(antennas) {
@@ -149,14 +150,14 @@ impl<T: Scalar> FreeSpace<T> {
         Self { scale, ..*self }
     }
 
-    /// The same channel with twice the scale, but no more than is expected of open ground: for regions, since
-    /// measurements leave less noise at the place that they were fitted to than there is.
+    /// The same channel with twice the scale, but no more than expected of open ground. For regions: the residuals at
+    /// the place that was fitted to the measurements are smaller than the noise.
     pub fn doubtful(&self) -> Self {
         Self { scale: (self.scale * T::TWO).min(T::from_f64(SCALE)), ..*self }
     }
 
-    /// Logarithm of the measurements' density if the transmitter is at `place`, to a power, levels and antennas
-    /// integrated over; it lacks a constant. A measurement's loss is the negative received level.
+    /// Logarithm of the density of the measurements, raised to `power`, if the transmitter is at `place`. Levels and
+    /// antennas are integrated over; a constant is omitted. A measurement's loss is the negative received level.
     pub fn log_likelihood(&self, measurements: &[Measurement<T>], place: [T; 2], power: T) -> T {
         let sight = Sight::new(measurements, place);
         let fits = Antennas::ALL.map(|antennas| self.fit(&sight, antennas, power).log_likelihood);
@@ -165,7 +166,7 @@ impl<T: Scalar> FreeSpace<T> {
         largest + sum.ln()
     }
 
-    /// The level received at one metre (dB) if the transmitter is at `place`, by the antennas that fit best.
+    /// The level at one metre (dB) if the transmitter is at `place`, with the best-fitting antennas.
     pub fn level(&self, measurements: &[Measurement<T>], place: [T; 2]) -> T {
         self.best_fit(&Sight::new(measurements, place)).1.level
     }
@@ -179,23 +180,23 @@ impl<T: Scalar> FreeSpace<T> {
         better(better(first, second), third)
     }
 
-    /// Fits the level by iterated weights, and integrates over it by Laplace's approximation.
+    /// Fits the level by iterative reweighting, and integrates over it with Laplace's approximation.
     fn fit(&self, sight: &Sight<T>, antennas: Antennas, power: T) -> Fit<T> {
         let width = self.scale * self.scale * T::from_f64(FREEDOM);
         let (prior, known) = match self.level {
             Some(LevelPrior { mean, sigma }) => (mean, (sigma * sigma).max(T::EPSILON).recip()),
             None => (T::ZERO, T::ZERO),
         };
-        // From a wide kernel, which all measurements reach, to the true one.
+        // From a wide kernel, which reaches all measurements, to the true one.
         let mut level = prior;
         let [widest, wider, wide] = [T::from_f64(1e3), T::from_f64(16.0), T::from_f64(4.0)];
         for widening in [widest, wider, wide, T::ONE, T::ONE, T::ONE] {
-            // Never narrower than expected of open ground, or what is far from the level would not be reached.
+            // Never narrower than expected of open ground: measurements far from the level would not be reached.
             let wide = width.max(T::from_f64(FREEDOM)) * widening;
             let (mut sum, mut weights) = (T::ZERO, T::ZERO);
             for suggested in sight.levels(antennas) {
                 let error = (suggested - level) * T::from_f64(0.1);
-                // In tens of decibels, of which squares fit into fixed point.
+                // In tens of decibels, whose squares fit into fixed point.
                 let weight = (wide * T::from_f64(0.01) + error * error).recip();
                 sum += weight * (suggested - level);
                 weights += weight;

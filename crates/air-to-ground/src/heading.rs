@@ -2,10 +2,10 @@ use kestirim_scalar::Scalar;
 
 use crate::Error;
 
-/// Where the drone's nose pointed when it measured, as far as that is known.
+/// The heading of the drone at a measurement, as far as it is known.
 ///
-/// Mean cosines and sines of the heading and of twice it: those of several measurements have a mean, in which a pattern of degree 2
-/// that turns with the drone is what it was on average.
+/// Stored as mean cosines and sines of the heading and of twice the heading, so that several headings can be averaged:
+/// the mean gives the average effect of a pattern of degree 2 that turns with the drone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -23,7 +23,7 @@ pub struct Heading<T> {
     means: [T; 4],
 }
 
-/// A heading as it was stored, which may be none.
+/// A heading as stored, not yet validated.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 struct Unchecked<T> {
@@ -43,7 +43,7 @@ impl<T: Scalar> TryFrom<Unchecked<T>> for Heading<T> {
 }
 
 impl<T: Scalar> Heading<T> {
-    /// A heading (rad), clockwise from the second axis of the plane, north, to the first one, east.
+    /// Creates a heading (rad), clockwise from north, the second axis of the plane, to east, the first one.
     ///
     /// # Errors
     /// [`Error::NotFinite`].
@@ -57,19 +57,19 @@ impl<T: Scalar> Heading<T> {
         Ok(Self { means: [cosine, sine, twice[0], twice[1]] })
     }
 
-    /// Any heading.
+    /// An unknown heading, for which all directions are equally likely.
     #[inline]
     pub fn unknown() -> Self {
         Self { means: [T::ZERO; 4] }
     }
 
-    /// Whether anything is known of it.
+    /// Whether anything is known of the heading.
     #[inline]
     pub fn is_known(&self) -> bool {
         self.means.iter().any(|mean| *mean != T::ZERO)
     }
 
-    /// The mean of two, of which the other has this share (0 to 1).
+    /// The weighted mean of two headings; `share` (0 to 1) is the weight of `other`.
     #[inline]
     #[must_use]
     pub fn mean(&self, other: &Self, share: T) -> Self {
@@ -80,19 +80,19 @@ impl<T: Scalar> Heading<T> {
         Self { means }
     }
 
-    /// Length of the mean of the headings' unit vectors: 1 if all are the same.
+    /// Length of the mean of the headings' unit vectors: 1 if all headings agree.
     pub(crate) fn length(&self) -> T {
         let [cosine, sine, ..] = self.means;
         T::norm(&[cosine, sine])
     }
 
-    /// A horizontal vector (east, north) as the drone has it: forward, right.
+    /// Rotates a horizontal vector from (east, north) to the drone's (forward, right).
     pub(crate) fn turned(&self, [east, north]: [T; 2]) -> [T; 2] {
         let [cosine, sine, ..] = self.means;
         [east * sine + north * cosine, east * cosine - north * sine]
     }
 
-    /// For x, y = east, north a pair (x·y, (x² − y²) / 2) as the drone has it for x, y = forward, right.
+    /// Rotates the pair (x·y, (x² − y²) / 2) from x, y = east, north to the drone's x, y = forward, right.
     pub(crate) fn turned_twice(&self, [product, difference]: [T; 2]) -> [T; 2] {
         let [.., cosine, sine] = self.means;
         [product * cosine + difference * sine, product * sine - difference * cosine]
@@ -120,7 +120,8 @@ mod tests {
                 assert!((seen - expected).abs() < 5e-4, "{degrees}: {seen} {expected}");
             }
             assert!(heading.is_known());
-            // Fore and aft in one: a pattern of degree 2 has the same gain there, one of degree 1 has none on average.
+            // Fore and aft averaged: the gain of a pattern of degree 2 is the same both ways, that of one of degree 1
+            // averages to zero.
             let back = Heading::new(T::from_f64(radians - core::f64::consts::PI)).expect("finite");
             let both = heading.mean(&back, T::HALF);
             let first = both.turned([east, north].map(T::from_f64)).map(T::to_f64);

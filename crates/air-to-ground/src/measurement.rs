@@ -2,7 +2,7 @@ use kestirim_scalar::Scalar;
 
 use crate::Error;
 
-/// A path loss measured from the air, checked to be plausible.
+/// A path loss measured from the air, checked for plausibility.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -22,7 +22,7 @@ pub struct Measurement<T> {
     loss: T,
 }
 
-/// A measurement as it was stored, which may be none.
+/// A measurement as stored, not yet validated.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 struct Unchecked<T> {
@@ -41,12 +41,12 @@ impl<T: Scalar> TryFrom<Unchecked<T>> for Measurement<T> {
 }
 
 impl<T: Scalar> Measurement<T> {
-    /// A `loss` (dB) measured by a drone above `place` (m, in the plane of the user) at `height` above the
-    /// user (m).
+    /// Creates a measurement of a `loss` (dB) by a drone above `place` (m, in the plane of the user), at `height` (m)
+    /// above the user.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; [`Error::NotPositive`] for a height that is not above zero;
-    /// [`Error::ImplausibleLoss`] beyond ±300 dB (a level of unknown offset may be negative).
+    /// [`Error::NotFinite`]; [`Error::NotPositive`] for a height that is not positive; [`Error::ImplausibleLoss`]
+    /// beyond ±300 dB (a level of unknown offset may be negative).
     #[inline]
     pub fn new(place: [T; 2], height: T, loss: T) -> Result<Self, Error> {
         if !T::all_finite(&[place[0], place[1], height, loss]) {
@@ -61,7 +61,7 @@ impl<T: Scalar> Measurement<T> {
         Ok(Self { place, height, loss })
     }
 
-    /// Horizontal place of the drone, m.
+    /// Horizontal position of the drone, m.
     #[inline(always)]
     pub fn place(&self) -> [T; 2] {
         self.place
@@ -79,7 +79,7 @@ impl<T: Scalar> Measurement<T> {
         self.loss
     }
 
-    /// The same measurement, had the transmitter been weaker by `level` (dB).
+    /// The measurement corrected for a transmitter that is weaker than assumed by `level` (dB).
     #[inline(always)]
     pub fn less(&self, level: T) -> Self {
         Self { loss: self.loss - level, ..*self }

@@ -15,9 +15,9 @@ pub struct Rotor<T> {
     pub disc_area: T,
     /// Drag coefficient times reference area `C_ds`, m².
     pub drag_area: T,
-    /// Power that the blades' profile takes in hover k₀, W.
+    /// Power k₀ required by the blades' profile drag in hover, W.
     pub profile_power: T,
-    /// Speed of the blades' tips `v_t`, m/s.
+    /// Tip speed of the blades `v_t`, m/s.
     pub tip_speed: T,
 }
 
@@ -34,10 +34,10 @@ impl<T: Scalar> Rotor<T> {
         }
     }
 
-    /// Power at an air speed (m/s), W: induced, parasitic and profile power (eq. 2.12).
+    /// Power at an air speed (m/s), W: the sum of induced, parasitic and profile power (eq. 2.12).
     ///
     /// # Errors
-    /// [`Error::NotFinite`] if the answer is not (Q16.16 can do up to 43 m/s with the thesis' drone).
+    /// [`Error::NotFinite`] if the result is not finite (Q16.16 reaches 43 m/s with the thesis' drone).
     pub fn power(&self, speed: T) -> Result<T, Error> {
         let induced = self.weight * self.induced_speed(speed)?;
         let square = speed * speed;
@@ -47,22 +47,22 @@ impl<T: Scalar> Rotor<T> {
         finite(induced + parasitic + profile)
     }
 
-    /// Speed at which the rotor drives the air down, m/s (eq. 2.15).
+    /// Speed with which the rotor accelerates the air downwards, m/s (eq. 2.15).
     ///
     /// # Errors
-    /// [`Error::NotFinite`] if the answer is not.
+    /// [`Error::NotFinite`] if the result is not finite.
     pub fn induced_speed(&self, speed: T) -> Result<T, Error> {
         let square = speed * speed;
         let loading = self.weight / (self.air_density * self.disc_area);
         finite(((square.hypot(loading) - square) * T::HALF).max(T::ZERO).sqrt())
     }
 
-    /// Energy of a flight plan, J: `distance` (m) at a speed (m/s), and `hover` seconds standing still in
-    /// the air (eqs 2.16, 2.17).
+    /// Energy of a flight plan, J: flying `distance` (m) at `speed` (m/s), and hovering for `hover` (s) (eqs 2.16,
+    /// 2.17).
     ///
     /// # Errors
-    /// [`Error::NotFinite`] if the answer is not (Q16.16 ends at 32 kJ); [`Error::NotPositive`] for a speed
-    /// that is not above zero.
+    /// [`Error::NotFinite`] if the result is not finite (Q16.16 ends at 32 kJ); [`Error::NotPositive`] for a speed
+    /// that is not positive.
     pub fn energy(&self, distance: T, speed: T, hover: T) -> Result<T, Error> {
         if speed <= T::ZERO {
             return Err(Error::NotPositive);

@@ -1,4 +1,4 @@
-//! What stored estimators are. Raise the version of one that is stored otherwise than before.
+//! Snapshot layouts of the estimators. Raise the version of an estimator whose stored form changes.
 
 use crate::{Channel, Contaminated, FreeSpace, OpenGround};
 use kestirim_scalar::Scalar;

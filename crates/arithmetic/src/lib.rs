@@ -1,6 +1,6 @@
 #![no_std]
-// Such a crate stays out of link-time optimisation, in which weak symbols and those of the same names that are not would
-// meet in one object, where they are an error.
+// A `no_builtins` crate stays out of link-time optimisation, which would merge its weak symbols with strong ones of the
+// same names into one object, and fail.
 #![cfg_attr(all(feature = "soft-float", armv6m), no_builtins)]
 #![doc = include_str!("../README.md")]
 
@@ -11,19 +11,19 @@ extern crate std;
 mod soft;
 pub mod vectors;
 
-/// √x, rounded to the nearest number; of zero that zero, of what is below it NaN (IEEE 754).
-#[inline(always)] // A kernel for vectors must not be left for it.
+/// √x, rounded to the nearest number; −0 for −0, and NaN below zero (IEEE 754).
+#[inline(always)] // Vector kernels must not contain a call.
 pub fn sqrt(x: f32) -> f32 {
     of_processor(x)
 }
 
-/// `core::f32::math::sqrt` is not stable, and `f32::sqrt` is std's.
+/// The root by an instruction: `core::f32::math::sqrt` is unstable, and `f32::sqrt` needs std.
 #[cfg(all(target_arch = "arm", target_abi = "eabihf"))]
 #[inline(always)]
-#[allow(unsafe_code)] // An instruction that no function of `core` stands for.
+#[allow(unsafe_code)] // No stable function of `core` gives this instruction.
 fn of_processor(x: f32) -> f32 {
     let mut bits = x.to_bits();
-    // By way of a general register: rustc lets nobody name one of the unit's where it has no double precision.
+    // Passed in a general register: without double precision, rustc accepts no floating-point register as an operand.
     // SAFETY: the instructions touch one register of each kind, both named; this ABI is for processors that have them.
     unsafe {
         core::arch::asm!("vmov s0, {bits}", "vsqrt.f32 s0, s0", "vmov {bits}, s0",
@@ -32,10 +32,10 @@ fn of_processor(x: f32) -> f32 {
     f32::from_bits(bits)
 }
 
-/// Intrinsics, not libm's assembler: a loop over them becomes vector instructions.
+/// The root by intrinsics instead of libm's assembler, so that a loop over it is vectorised.
 #[cfg(all(target_arch = "x86_64", target_feature = "sse2"))]
 #[inline(always)]
-#[allow(unsafe_code)] // As above.
+#[allow(unsafe_code)] // No stable function of `core` gives this instruction.
 fn of_processor(x: f32) -> f32 {
     use core::arch::x86_64::{_mm_cvtss_f32, _mm_set_ss, _mm_sqrt_ss};
     // SAFETY: compiled only for processors that have SSE.

@@ -1,26 +1,27 @@
-//! One program for old and new processors: a kernel is compiled for several kinds of vectors, and the widest that the
+//! Kernels for old and new processors: each is compiled for several kinds of vectors, and the widest that the
 //! processor has are used.
 
-/// Computation over arrays that is worth vector instructions.
+/// A computation over arrays that is worth vector instructions.
 ///
-/// It is compiled anew for each kind of vectors only if all of it is inlined: `run` and what it calls are to be
-/// `#[inline(always)]`. Rust neither reorders sums nor fuses a multiplication with an addition, so all kinds give the
+/// It is compiled for each kind of vectors only if all of it is inlined: mark `run` and the functions that it calls
+/// `#[inline(always)]`. Rust neither reorders sums nor fuses multiplications with additions, so all kinds give the
 /// same bits.
 pub trait Kernel {
     /// Result of the computation.
     type Output;
 
-    /// Computes it.
+    /// Runs the computation.
     fn run(self) -> Self::Output;
 }
 
-/// A kind of vectors that this processor has.
+/// A kind of vectors that the processor has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Vectors(Kind);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
-    /// What the program is compiled for: SSE2 on an x86-64, NEON on an `AArch64`, none on a microcontroller.
+    /// The target that the program is compiled for: SSE2 on an x86-64, NEON on an `AArch64`, no vectors on a
+    /// microcontroller.
     Compiled,
     #[cfg(all(feature = "vectors", target_arch = "x86_64"))]
     Avx2,
@@ -29,15 +30,15 @@ enum Kind {
 }
 
 impl Vectors {
-    /// The widest: AVX-512 or AVX2 if feature `vectors` is on and the processor has them, otherwise those that the
-    /// program is compiled for.
+    /// The widest vectors: AVX-512 or AVX2 if feature `vectors` is on and the processor has them, otherwise those that
+    /// the program is compiled for.
     #[inline]
     pub fn widest() -> Self {
         let [compiled, wider, widest] = Self::present();
         widest.or(wider).or(compiled).unwrap_or(Self(Kind::Compiled))
     }
 
-    /// All that the processor has, the narrowest first; for tests that compare them.
+    /// All kinds that the processor has, the narrowest first, for tests that compare them.
     #[inline]
     pub fn all() -> impl Iterator<Item = Self> {
         Self::present().into_iter().flatten()
@@ -47,7 +48,7 @@ impl Vectors {
     #[inline]
     fn present() -> [Option<Self>; 3] {
         use std::arch::is_x86_feature_detected as has;
-        // A compiler takes what these bring with them for given.
+        // With AVX-512 enabled, the compiler also uses AVX2, FMA and F16C.
         let wider = has!("avx2") && has!("fma") && has!("f16c");
         let avx512 = wider && has!("avx512f") && has!("avx512dq") && has!("avx512vl");
         [
@@ -63,9 +64,9 @@ impl Vectors {
         [Some(Self(Kind::Compiled)), None, None]
     }
 
-    /// Runs a kernel on them.
+    /// Runs a kernel on this kind of vectors.
     #[inline(always)]
-    #[allow(unsafe_code)] // Instructions that not every processor has.
+    #[allow(unsafe_code)] // Calls functions whose instructions not every processor has.
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self.0 {
             Kind::Compiled => kernel.run(),

@@ -1,11 +1,12 @@
-//! The root is the nearest number, for numbers of all sizes; on other processors the tests across crates compare bits.
+//! The root is rounded to nearest, for numbers of all sizes; for other processors, the tests across crates compare
+//! bits.
 
 use kestirim_arithmetic::sqrt;
 
 #[test]
 fn the_root_is_the_nearest_number() {
-    // All exponents, subnormal ones too, and fractions spread over them. Rounding the root in double precision to
-    // single is the correctly rounded one: it has more than twice the digits.
+    // All exponents, also subnormal ones, with fractions spread over them. The root in double precision, rounded to
+    // single, is correctly rounded: a double has more than twice the digits.
     for bits in (0..f32::INFINITY.to_bits()).step_by(10_007) {
         let x = f32::from_bits(bits);
         assert_eq!(sqrt(x), f64::from(x).sqrt() as f32, "√{x:e}");

@@ -3,7 +3,7 @@ use core::fmt;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// Reason for which an [`Ahrs`] refused a sample. Its state is as it was.
+/// Reason why an [`Ahrs`] refused a sample. Its state is as it was before the call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
@@ -25,21 +25,21 @@ impl fmt::Display for Error {
 
 impl core::error::Error for Error {}
 
-/// Gains with which gravity corrects what the gyroscope integrates.
+/// Gains with which gravity corrects the integrated gyroscope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gains<T> {
     /// Tilt correction (1/s): 1/gain is the time constant with which gravity corrects the gyroscope.
     pub tilt: T,
-    /// Gyro bias correction (1/s²): the integral term; zero keeps the bias as it was given.
+    /// Gyro bias correction (1/s²), the integral term; zero keeps the initial bias.
     pub bias: T,
-    /// Largest deviation of |f|/g from 1 at which the force is taken for gravity.
+    /// Largest deviation of |f|/g from 1 at which the specific force is taken for gravity.
     pub gate: T,
 }
 
 impl<T: Scalar> Default for Gains<T> {
-    /// 1 s for the tilt, half a minute for the bias, ±10 % of g.
+    /// Time constants of 1 s for the tilt and half a minute for the bias, and a gate of ±10 % of g.
     fn default() -> Self {
         Self { tilt: T::ONE, bias: T::from_f64(0.03), gate: T::from_f64(0.1) }
     }
@@ -49,8 +49,8 @@ impl<T: Scalar> Default for Gains<T> {
 ///
 /// The explicit complementary filter of Mahony, Hamel & Pflimlin (IEEE TAC 2008, eq. 48), whose
 /// tilt error is e = f̂ × ĝ in body axes: the angular rate is corrected by `tilt·e`, the gyro bias by
-/// `−bias·e`. The accelerometer is used only while its magnitude is near g; the heading is the gyroscope's
-/// alone.
+/// `−bias·e`. The accelerometer is used only while its magnitude is near g; the heading comes from the
+/// gyroscope alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -76,29 +76,29 @@ impl<T: Scalar> Ahrs<T> {
         Self { orientation, gyro_bias, gains }
     }
 
-    /// Body → earth, after the last sample.
+    /// The rotation from body to earth after the last sample.
     pub fn orientation(&self) -> &Orientation<T> {
         &self.orientation
     }
 
-    /// Estimated bias of the gyroscope, which is subtracted from it (rad/s, body).
+    /// The estimated gyroscope bias, which is subtracted from its readings (rad/s, body).
     pub fn gyro_bias(&self) -> &SVector<T, 3> {
         &self.gyro_bias
     }
 
-    /// Turns the reference by a correction found elsewhere, a rotation vector in earth axes (rad).
+    /// Turns the reference by an external correction, given as a rotation vector in earth axes (rad).
     pub fn turn_in_earth(&mut self, correction: &SVector<T, 3>) {
         self.orientation = self.orientation.turned_in_earth(correction);
     }
 
-    /// Turns the reference by how the body turned, a rotation vector in body axes (rad), where that is known better than as rate ×
-    /// interval. The gyroscope's bias is not taken off.
+    /// Turns the reference by a known turn of the body, given as a rotation vector in body axes (rad), where that is
+    /// more accurate than rate × interval. The gyroscope's bias is not subtracted.
     pub fn turn_in_body(&mut self, turn: &SVector<T, 3>) {
         self.orientation = self.orientation.turned_in_body(turn);
     }
 
     /// Takes one sample: angular rate (rad/s) and specific force (m/s²), both in body axes, held for
-    /// `interval` seconds. Without a force, or with one that is no measure of gravity, the gyroscope is
+    /// `interval` seconds. Without a force, or with one outside the gate, the gyroscope is
     /// integrated alone.
     ///
     /// # Errors
@@ -134,8 +134,8 @@ impl<T: Scalar> Ahrs<T> {
         Ok(())
     }
 
-    /// f̂ × ĝ in body axes (rad for small tilts); zero where the force is no measure of gravity, `None` where
-    /// it is not finite.
+    /// f̂ × ĝ in body axes (rad for small tilts); zero if the force is outside the gate, `None` if it is
+    /// not finite.
     fn tilt_error(&self, specific_force: &SVector<T, 3>) -> Option<SVector<T, 3>> {
         let force = specific_force * T::from_f64(1.0 / Self::GRAVITY);
         let [x, y, z] = *force.as_array();
@@ -143,7 +143,7 @@ impl<T: Scalar> Ahrs<T> {
         if !square.is_finite() {
             return None;
         }
-        // Squares spare the root: the magnitude is within the gate where its square is within these.
+        // Compares squares to avoid the root: the magnitude is within the gate if its square is within these bounds.
         let (least, most) = (T::ONE - self.gains.gate, T::ONE + self.gains.gate);
         if square < least * least || square > most * most {
             return Some(SVector::zeros());

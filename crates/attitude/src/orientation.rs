@@ -1,13 +1,13 @@
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// A unit quaternion that turns vectors of the **body** into vectors of the **earth**.
+/// A unit quaternion that rotates vectors from **body** axes to **earth** axes.
 ///
 /// Earth is right-handed with z up; its x axis points wherever heading zero was declared. The
 /// quaternion follows Hamilton's convention, w first; q and −q are the same orientation.
 ///
-/// Turns leave the norm to their rounding; [`Orientation::renormalised`] brings it back to 1 and is due
-/// every few hundred turns. Corrections in earth axes do so themselves.
+/// Turns let rounding accumulate in the norm; [`Orientation::renormalised`] restores it to 1 and is due
+/// every few hundred turns. Corrections in earth axes renormalise themselves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -19,14 +19,13 @@ pub struct Orientation<T> {
 }
 
 impl<T: Scalar> Orientation<T> {
-    /// The body's axes are the earth's.
+    /// The orientation in which body and earth axes coincide.
     #[inline]
     pub fn identity() -> Self {
         Self { w: T::ONE, x: T::ZERO, y: T::ZERO, z: T::ZERO }
     }
 
-    /// The orientation with quaternion `[w, x, y, z]`, brought to norm 1; `None` where that is
-    /// impossible because it is zero or not finite.
+    /// The orientation with quaternion `[w, x, y, z]`, normalised; `None` if its norm is zero or not finite.
     pub fn from_quaternion([w, x, y, z]: [T; 4]) -> Option<Self> {
         let norm = w.hypot(x).hypot(y.hypot(z));
         if !norm.is_finite() || norm <= T::ZERO {
@@ -41,10 +40,10 @@ impl<T: Scalar> Orientation<T> {
         [self.w, self.x, self.y, self.z]
     }
 
-    /// The shortest turn that brings a specific force measured at rest (body, any unit) upright.
+    /// The orientation that brings a specific force measured at rest (body, any unit) upright, by the shortest turn.
     ///
-    /// Its heading means nothing yet: it is whatever the shortest turn leaves. `None` where the
-    /// force is zero or not finite and so has no direction.
+    /// Its heading is arbitrary: it is whatever the shortest turn leaves. `None` if the
+    /// force is zero or not finite, and so has no direction.
     pub fn from_specific_force(force: &SVector<T, 3>) -> Option<Self> {
         let [x, y, z] = *force.as_array();
         let norm = x.hypot(y).hypot(z);
@@ -52,7 +51,7 @@ impl<T: Scalar> Orientation<T> {
             return None;
         }
         let (x, y, z) = (x / norm, y / norm, z / norm);
-        // Upside down, the shortest turn is ill-defined: half a turn about x goes first.
+        // Upside down, the shortest turn is ill-defined, so half a turn about x is made first.
         if z < T::ZERO {
             let upright = Self::shortest_to_up(x, -y, -z)?;
             return Some(upright.then_body(&Self {
@@ -65,10 +64,10 @@ impl<T: Scalar> Orientation<T> {
         Self::shortest_to_up(x, y, z)
     }
 
-    /// This orientation with its tilt as a specific force measured at rest (body, any unit) shows it, by the
-    /// shortest turn: a heading that was right stays so.
+    /// This orientation with its tilt corrected by a specific force measured at rest (body, any unit), by the
+    /// shortest turn, which preserves a correct heading.
     ///
-    /// `None` where the force is zero or not finite and so has no direction.
+    /// `None` if the force is zero or not finite, and so has no direction.
     pub fn levelled(&self, force: &SVector<T, 3>) -> Option<Self> {
         let upright = Self::from_specific_force(&self.to_earth(force))?;
         Some(upright.then_body(self).renormalised())
@@ -79,33 +78,33 @@ impl<T: Scalar> Orientation<T> {
         Self::from_quaternion([T::ONE + z, y, -x, T::ZERO])
     }
 
-    /// The body turned on by a rotation vector given in **body** axes (rad): what a gyroscope
-    /// measures, angular rate × time.
+    /// The orientation after a turn given as a rotation vector in **body** axes (rad), such as a gyroscope's
+    /// angular rate × time.
     #[inline]
     pub fn turned_in_body(&self, rotation: &SVector<T, 3>) -> Self {
         self.then_body(&Self::from_rotation_vector(rotation))
     }
 
-    /// The body turned on by a rotation vector given in **earth** axes (rad): how an estimator
-    /// corrects tilt and heading.
+    /// The orientation after a turn given as a rotation vector in **earth** axes (rad), as estimators
+    /// correct tilt and heading.
     #[inline]
     pub fn turned_in_earth(&self, rotation: &SVector<T, 3>) -> Self {
         Self::from_rotation_vector(rotation).then_body(self).renormalised()
     }
 
-    /// A vector of the body, in earth axes.
+    /// A vector in body axes, transformed to earth axes.
     #[inline]
     pub fn to_earth(&self, body: &SVector<T, 3>) -> SVector<T, 3> {
         self.rotate(body, self.w)
     }
 
-    /// A vector of the earth, in body axes.
+    /// A vector in earth axes, transformed to body axes.
     #[inline]
     pub fn to_body(&self, earth: &SVector<T, 3>) -> SVector<T, 3> {
         self.rotate(earth, -self.w)
     }
 
-    /// The earth's z axis in body axes: where up is.
+    /// The earth's z axis, up, in body axes.
     #[inline]
     pub fn up_in_body(&self) -> SVector<T, 3> {
         let Self { w, x, y, z } = *self;
@@ -123,7 +122,7 @@ impl<T: Scalar> Orientation<T> {
         sine.atan2(cosine)
     }
 
-    /// v + 2·w·(q × v) + 2·q × (q × v): 15 multiplications; −w turns the other way.
+    /// v + 2·w·(q × v) + 2·q × (q × v), in 15 multiplications; −w rotates the other way.
     #[cfg_attr(for_size, inline(never))]
     #[cfg_attr(not(for_size), inline)]
     fn rotate(&self, v: &SVector<T, 3>, w: T) -> SVector<T, 3> {
@@ -134,7 +133,7 @@ impl<T: Scalar> Orientation<T> {
         SVector::from([v[0] + w * t[0] + u[0], v[1] + w * t[1] + u[1], v[2] + w * t[2] + u[2]])
     }
 
-    /// exp(φ/2): by its power series up to half a radian, which a sample period seldom exceeds, and by
+    /// exp(φ/2): by its power series up to half a radian, which a sample period rarely exceeds, and by
     /// sine and cosine beyond.
     #[inline(always)]
     fn from_rotation_vector(rotation: &SVector<T, 3>) -> Self {
@@ -163,8 +162,8 @@ impl<T: Scalar> Orientation<T> {
         }
     }
 
-    /// The norm brought back to 1 by one Newton step of 1/√(norm²): exact to the square of the deviation,
-    /// which is rounding only.
+    /// The same orientation with the norm restored to 1 by one Newton step of 1/√(norm²). The error left is quadratic
+    /// in the deviation, which is due to rounding only.
     #[inline]
     pub fn renormalised(&self) -> Self {
         let q = [self.w, self.x, self.y, self.z];
@@ -174,7 +173,7 @@ impl<T: Scalar> Orientation<T> {
     }
 }
 
-/// (cos a/2, sin(a/2)/a), kept apart because it is seldom needed and long.
+/// (cos a/2, sin(a/2)/a), kept out of line because it is rarely needed and long.
 #[cold]
 #[inline(never)]
 fn half_angle<T: Scalar>(angle: T) -> (T, T) {

@@ -1,4 +1,4 @@
-//! Where a transmitter is, searched by a drone: the beacon's search of `kestirim-user-locator`.
+//! The drone's search for a transmitter, by the beacon search of `kestirim-user-locator`.
 #![allow(unsafe_code)] // Functions that C calls: symbols of its own, and pointers, which `memory` checks.
 
 use core::ffi::c_void;
@@ -19,11 +19,12 @@ type Number = kestirim_scalar::Q16_16;
 
 /// Most corners of an area.
 pub const MOST_CORNERS: usize = 16;
-/// Measurements that are kept: of a longer flight, evenly spaced ones.
+/// The number of measurements that are kept: evenly spaced ones of a longer flight.
 const KEPT: usize = 40;
-/// Points of the lattice on which the posterior is computed.
+/// The number of points of the lattice on which the posterior is computed.
 const POINTS: usize = 500;
-/// A level is a circle about the transmitter: fewer do not meet in a point.
+/// The fewest measurements that determine a position: each level is a circle about the transmitter, and fewer circles
+/// do not meet in one point.
 const FEWEST: usize = 3;
 
 /// A search for a transmitter of unknown power over open ground, from the levels that a drone receives.

@@ -44,7 +44,7 @@ pub enum HealthReason {
     Range = 1 << 12,
 }
 
-// A reason that is added there gets its bit here.
+// A reason that is added there needs its bit here.
 const _: () = assert!(1 << (Reason::ALL.len() - 1) == HealthReason::Range as u32);
 const _: () = assert!(1 << Reason::NotObservable as u32 == HealthReason::NotObservable as u32);
 

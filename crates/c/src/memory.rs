@@ -1,8 +1,8 @@
-//! Where C's pointers become references: all `unsafe` code of this crate's inside.
+//! Turns C's pointers into references; all `unsafe` code of this crate's internals is here.
 //!
-//! What is checked: that a pointer is not null, that it is aligned, that memory is large enough, and that it holds what
-//! its handle says. What cannot be checked is said at the beginning of the header: that memory belongs to the caller, is
-//! as large as was said, and is not used by another call at the same time.
+//! These are checked: that a pointer is not null, that it is aligned, that memory is large enough, and that it holds
+//! what its handle claims. What cannot be checked is stated at the beginning of the header: that memory belongs to the
+//! caller, is as large as stated, and is not used by another call at the same time.
 #![allow(unsafe_code)] // C hands over pointers, and nothing but a pointer.
 
 use core::ffi::c_void;
@@ -15,17 +15,17 @@ use serde::de::DeserializeOwned;
 
 use crate::Status;
 
-/// More of anything than an array of C's may have here.
+/// The largest number of elements that is accepted for any array from C.
 const MOST: usize = 4096;
 
-/// More bytes than any snapshot has.
+/// The number of bytes that every snapshot stays below.
 const LONGEST: usize = 1 << 16;
 
-/// A type of handles: what C calls an object, and what there is behind it.
+/// A handle type, C's name for an object, and the type of the object behind it.
 pub(crate) trait Handle {
-    /// What the memory holds.
+    /// The contents of the memory.
     type Value;
-    /// Tells the objects of one type from all others, and from memory that holds none.
+    /// Distinguishes the objects of this type from all others, and from memory without an object.
     const TAG: u32;
 }
 
@@ -36,12 +36,12 @@ struct Held<V> {
     value: V,
 }
 
-/// Bytes of an object.
+/// The size of an object, bytes.
 pub(crate) const fn size<H: Handle>() -> usize {
     size_of::<Held<H::Value>>()
 }
 
-/// Its alignment.
+/// The alignment of an object, bytes.
 pub(crate) const fn align<H: Handle>() -> usize {
     align_of::<Held<H::Value>>()
 }
@@ -56,7 +56,7 @@ fn check<T>(pointer: *const T) -> Result<(), Status> {
     }
 }
 
-/// Makes an object in memory, and its handle.
+/// Creates an object in memory, and its handle.
 ///
 /// # Safety
 /// `memory` is the caller's, for `size` bytes, and `handle` may be written.
@@ -90,7 +90,7 @@ pub(crate) unsafe fn init<H: Handle>(
 /// The object of a handle.
 ///
 /// # Safety
-/// `handle` is null or one that [`init`] made, whose memory nobody changes meanwhile.
+/// `handle` is null or one that [`init`] made, whose memory is not changed meanwhile.
 #[inline]
 pub(crate) unsafe fn held<'a, H: Handle>(handle: *const H) -> Result<&'a H::Value, Status> {
     let held = handle.cast::<Held<H::Value>>();
@@ -104,10 +104,10 @@ pub(crate) unsafe fn held<'a, H: Handle>(handle: *const H) -> Result<&'a H::Valu
     Ok(unsafe { &(*held).value })
 }
 
-/// The same, to be changed.
+/// The object of a handle, mutably.
 ///
 /// # Safety
-/// As [`held`], and nobody reads the memory meanwhile.
+/// As [`held`], and the memory is not read meanwhile.
 #[inline]
 pub(crate) unsafe fn held_mut<'a, H: Handle>(handle: *mut H) -> Result<&'a mut H::Value, Status> {
     // SAFETY: the caller's word is the same.
@@ -116,7 +116,7 @@ pub(crate) unsafe fn held_mut<'a, H: Handle>(handle: *mut H) -> Result<&'a mut H
     Ok(unsafe { &mut (*handle.cast::<Held<H::Value>>()).value })
 }
 
-/// Stores an object in a buffer, and how many bytes it takes there.
+/// Stores an object in a buffer, and writes the number of bytes that it takes there to `length`.
 ///
 /// # Safety
 /// As [`held`]; `buffer` is the caller's for `capacity` bytes, and `length` may be written.
@@ -141,7 +141,7 @@ where
     })
 }
 
-/// Makes an object in memory of what [`snapshot`] stored, and its handle.
+/// Creates an object in memory from what [`snapshot`] stored, and its handle.
 ///
 /// # Safety
 /// As [`init`]; `bytes` may be read for `length`.
@@ -165,10 +165,10 @@ where
     }
 }
 
-/// An argument, copied.
+/// Copies an argument.
 ///
 /// # Safety
-/// `pointer` is null or may be read. `T` is plain numbers, of which all bits are valid.
+/// `pointer` is null or may be read. `T` consists of plain numbers, for which all bit patterns are valid.
 #[inline]
 pub(crate) unsafe fn argument<T: Copy>(pointer: *const T) -> Result<T, Status> {
     check(pointer)?;
@@ -176,7 +176,7 @@ pub(crate) unsafe fn argument<T: Copy>(pointer: *const T) -> Result<T, Status> {
     Ok(unsafe { pointer.read() })
 }
 
-/// An argument that may be left out, by a null pointer.
+/// Copies an optional argument, which a null pointer leaves out.
 ///
 /// # Safety
 /// As [`argument`].
@@ -189,10 +189,10 @@ pub(crate) unsafe fn optional<T: Copy>(pointer: *const T) -> Result<Option<T>, S
     unsafe { argument(pointer) }.map(Some)
 }
 
-/// An array; of none, the pointer is not looked at.
+/// An array; if it is empty, the pointer is not looked at.
 ///
 /// # Safety
-/// `pointer` may be read for so many, which nobody changes meanwhile. `T` is plain numbers.
+/// `pointer` may be read for `count` elements, which are not changed meanwhile. `T` consists of plain numbers.
 #[inline]
 pub(crate) unsafe fn array<'a, T>(pointer: *const T, count: usize) -> Result<&'a [T], Status> {
     if count == 0 {
@@ -206,10 +206,10 @@ pub(crate) unsafe fn array<'a, T>(pointer: *const T, count: usize) -> Result<&'a
     Ok(unsafe { slice::from_raw_parts(pointer, count) })
 }
 
-/// A place for an answer.
+/// The destination of a result.
 ///
 /// # Safety
-/// `pointer` is null or may be written, and nobody uses the place meanwhile.
+/// `pointer` is null or may be written, and the place is not used meanwhile.
 #[inline]
 pub(crate) unsafe fn place<'a, T>(pointer: *mut T) -> Result<&'a mut MaybeUninit<T>, Status> {
     check(pointer)?;
@@ -217,7 +217,7 @@ pub(crate) unsafe fn place<'a, T>(pointer: *mut T) -> Result<&'a mut MaybeUninit
     Ok(unsafe { &mut *pointer.cast() })
 }
 
-/// A place for an answer that is not wanted if the pointer is null.
+/// The destination of an optional result, which a null pointer declines.
 ///
 /// # Safety
 /// As [`place`].
@@ -232,7 +232,7 @@ pub(crate) unsafe fn wanted<'a, T>(
     unsafe { place(pointer) }.map(Some)
 }
 
-/// What a call answers with.
+/// The status that a call returns.
 #[inline]
 pub(crate) fn status(run: impl FnOnce() -> Result<(), Status>) -> Status {
     match run() {

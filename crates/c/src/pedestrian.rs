@@ -1,4 +1,4 @@
-//! Where a foot walked: `kestirim-pedestrian`.
+//! The path of a walking foot, by `kestirim-pedestrian`.
 #![allow(unsafe_code)] // Functions that C calls: symbols of its own, and pointers, which `memory` checks.
 
 use core::ffi::c_void;
@@ -27,7 +27,7 @@ pub struct Pedestrian {
     _private: [u8; 0],
 }
 
-/// What the memory holds.
+/// The contents of the memory.
 #[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct Walk {
     tracker: EkfTracker<Number>,

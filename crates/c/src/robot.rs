@@ -1,4 +1,5 @@
-//! Where a tag is, from ranges to anchors: the plane's tracker of `kestirim-uwb-tracker`, with IMU and wheels.
+//! The position of a tag from ranges to anchors, by the tracker in the plane of `kestirim-uwb-tracker`, with IMU and
+//! wheels.
 #![allow(unsafe_code)] // Functions that C calls: symbols of its own, and pointers, which `memory` checks.
 
 use core::ffi::c_void;

@@ -1,4 +1,4 @@
-//! An aircraft's longitudinal motion: the flight filter of `kestirim-uav-estimator`.
+//! An aircraft's longitudinal motion, by the flight filter of `kestirim-uav-estimator`.
 #![allow(unsafe_code)] // Functions that C calls: symbols of its own, and pointers, which `memory` checks.
 
 use core::ffi::c_void;
@@ -80,7 +80,7 @@ impl Uav {
         if !(usual_interval > 0.0 && usual_interval.is_finite()) {
             return Err(Status::InvalidArgument);
         }
-        // Rows of C are columns of nalgebra's.
+        // Rows of C are columns of nalgebra.
         let a = SMatrix::<f64, 4, 4>::from_data(ArrayStorage(a));
         let b = SMatrix::<f64, 2, 4>::from_data(ArrayStorage(b)).transpose();
         let c = SMatrix::<f64, 4, UAV_OUTPUTS>::from_data(ArrayStorage(c)).transpose();

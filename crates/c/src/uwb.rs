@@ -1,4 +1,4 @@
-//! What both trackers of ultra-wideband ranges have in common.
+//! The parts that both trackers of ultra-wideband ranges share.
 
 use heapless::Vec;
 use kestirim_scalar::Scalar;
@@ -59,7 +59,7 @@ pub struct Anchor {
 }
 
 impl Anchor {
-    /// The same for the trackers.
+    /// Converts anchors to the trackers' form.
     pub(crate) fn all<const A: usize>(anchors: &[Self]) -> Result<Vec<Place<Number>, A>, Status> {
         let mut all = Vec::new();
         for anchor in anchors {

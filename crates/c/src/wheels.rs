@@ -1,4 +1,4 @@
-//! Where a robot with wheels is: the tracker of ranges and wheels of `kestirim-uwb-tracker`.
+//! The position of a wheeled robot, by the tracker of ranges and wheels of `kestirim-uwb-tracker`.
 #![allow(unsafe_code)] // Functions that C calls: symbols of its own, and pointers, which `memory` checks.
 
 use core::ffi::c_void;

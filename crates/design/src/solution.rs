@@ -1,24 +1,24 @@
-//! What a design gives.
+//! Result of a design.
 
 use nalgebra::DMatrix;
 
-/// What a design gives.
+/// Result of a design.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(untagged))]
 pub enum Solution {
     /// An observer gain.
     Gain {
-        /// L.
+        /// L, the gain of the predictor form.
         #[cfg_attr(feature = "serde", serde(rename = "L", serialize_with = "rows"))]
         gain: DMatrix<f64>,
-        /// How far the worst pole is off, beside its size.
+        /// Error of the worst pole relative to its magnitude.
         pole_error: f64,
-        /// Of the 16 digits of a double.
+        /// Number of digits lost, of the 16 of a double.
         digits_lost: f64,
     },
     /// A steady Kalman filter.
     Filter {
-        /// The prior covariance.
+        /// P⁻, the prior covariance.
         #[cfg_attr(feature = "serde", serde(rename = "P", serialize_with = "rows"))]
         prior: DMatrix<f64>,
         /// The gain of the update.
@@ -27,21 +27,21 @@ pub enum Solution {
         /// The gain of the observer in predictor form.
         #[cfg_attr(feature = "serde", serde(rename = "K_predictor", serialize_with = "rows"))]
         predictor_gain: DMatrix<f64>,
-        /// How many it took.
+        /// Number of doublings until convergence.
         doublings: u32,
     },
     /// A system in discrete time.
     Discrete {
-        /// The transition.
+        /// A in discrete time, the transition.
         #[cfg_attr(feature = "serde", serde(rename = "Ad", serialize_with = "rows"))]
         a: DMatrix<f64>,
-        /// The input matrix.
+        /// B in discrete time, the input matrix.
         #[cfg_attr(feature = "serde", serde(rename = "Bd", serialize_with = "rows"))]
         b: DMatrix<f64>,
     },
     /// The covariance of an observer's error.
     Covariance {
-        /// P.
+        /// P, the covariance.
         #[cfg_attr(feature = "serde", serde(rename = "P", serialize_with = "rows"))]
         covariance: DMatrix<f64>,
     },

@@ -1,10 +1,10 @@
-//! Two results over each other, and how they differ.
+//! Overlays of two results of one figure, and their differences.
 
 use crate::{Figure, Mark, Series};
 
 impl Figure {
-    /// Another result of the same figure, behind this one. Series are told apart by `names`: the other's, this one's. What is the
-    /// same in both is drawn once.
+    /// Draws another result of the same figure behind this one. `names` are those of the other result and of this one,
+    /// put before the names of their series; a series that is the same in both is drawn once.
     pub fn before(mut self, other: &Self, names: [&str; 2]) -> Self {
         let differing = |these: &Self, those: &Self| -> Vec<bool> {
             (0..these.series.len()).map(|place| !same(these, place, those)).collect()
@@ -23,8 +23,9 @@ impl Figure {
         self
     }
 
-    /// What this result has more than another one, series by series, at the times of this one; on a map, how far the places of
-    /// the same time are apart. None if there is nothing to tell: no time, no other series of the same name, or the same.
+    /// This result minus another one, series by series, at the times of this one; on a map, the distance between the
+    /// places at the same time. `None` if there is nothing to show: no time, no other series of the same name, or no
+    /// difference.
     pub fn less(&self, other: &Self) -> Option<Self> {
         let differing = (0..self.series.len()).filter(|&place| !same(self, place, other));
         let pairs = differing.filter_map(|place| {
@@ -56,21 +57,21 @@ impl Figure {
     }
 }
 
-/// The series of another figure that has the same name: of several the one at the same place among them.
+/// The series of the same name in another figure: if several have it, the one at the same place among them.
 fn twin<'a>(figure: &Figure, place: usize, other: &'a Figure) -> Option<&'a Series> {
     let name = &figure.series.get(place)?.name;
     let before = figure.series[..place].iter().filter(|series| series.name == *name).count();
     other.series.iter().filter(|series| series.name == *name).nth(before)
 }
 
-/// The covariances of a series one after the other.
+/// The covariances of a series, flattened.
 fn flat(series: &Series) -> Option<&[f64]> {
     series.spread.as_deref().map(<[_]>::as_flattened)
 }
 
-/// Whether another figure has the same series.
+/// Whether another figure has an equal series of the same name.
 fn same(figure: &Figure, place: usize, other: &Figure) -> bool {
-    // Gaps are no numbers, and gaps all the same.
+    // Gaps are `NaN`, which equals nothing: two gaps count as equal.
     let equal = |a: &[f64], b: &[f64]| {
         a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
     };
@@ -89,7 +90,7 @@ fn same(figure: &Figure, place: usize, other: &Figure) -> bool {
     })
 }
 
-/// How a difference is drawn: as a line where the series was one of any kind.
+/// The mark of a difference: a line where the series is drawn as steps or dashes, else the mark of the series.
 fn marked(mark: Mark) -> Mark {
     match mark {
         Mark::Steps | Mark::Dashes => Mark::Line,
@@ -99,7 +100,8 @@ fn marked(mark: Mark) -> Mark {
 
 type Line = (Vec<f64>, Vec<f64>);
 
-/// None if either is no function of the horizontal axis.
+/// The first series minus the second, at the points of the first; `None` if either is not a function of the horizontal
+/// axis.
 fn difference(ours: &Series, theirs: &Series) -> Option<Line> {
     let is_held = theirs.mark == Mark::Steps;
     let theirs = Function::new(&theirs.x, &theirs.y)?;
@@ -109,7 +111,7 @@ fn difference(ours: &Series, theirs: &Series) -> Option<Line> {
     Some((ours.x.clone(), values.collect()))
 }
 
-/// None if either does not know its times.
+/// The distance between two paths at the times of the first; `None` if either has no times.
 fn apart(ours: &Series, theirs: &Series) -> Option<Line> {
     let their_times = theirs.times.as_deref()?;
     let (x, y) = (Function::new(their_times, &theirs.x)?, Function::new(their_times, &theirs.y)?);
@@ -119,21 +121,21 @@ fn apart(ours: &Series, theirs: &Series) -> Option<Line> {
     Some((times.to_vec(), values.collect()))
 }
 
-/// Values between which one may interpolate.
+/// A function given by points that are sorted along the horizontal axis.
 struct Function<'a> {
     x: &'a [f64],
     y: &'a [f64],
 }
 
 impl<'a> Function<'a> {
-    /// None without points, and where they do not go from left to right.
+    /// `None` without points, or if the abscissae are not sorted.
     fn new(x: &'a [f64], y: &'a [f64]) -> Option<Self> {
         let length = x.len().min(y.len());
         let (x, y) = (&x[..length], &y[..length]);
         (length > 0 && x.is_sorted()).then_some(Self { x, y })
     }
 
-    /// The value of the last point that is not later; `NaN` before the first and behind the last.
+    /// The value of the last point that is not later than `x`; `NaN` before the first point and beyond the last.
     fn held(&self, x: f64) -> f64 {
         let after = self.x.partition_point(|&known| known <= x);
         match after.checked_sub(1) {
@@ -142,7 +144,7 @@ impl<'a> Function<'a> {
         }
     }
 
-    /// `NaN` beyond the ends and in gaps.
+    /// The value interpolated linearly at `x`; `NaN` beyond the ends and in gaps.
     fn at(&self, x: f64) -> f64 {
         let after = self.x.partition_point(|&known| known < x);
         match (self.x.get(after), after.checked_sub(1)) {

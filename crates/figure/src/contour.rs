@@ -1,25 +1,26 @@
-//! Lines of equal height over a rectangle, by marching squares.
+//! Contour lines over a rectangle, by marching squares.
 
 use std::collections::BTreeMap;
 
 /// Values at the corners of square cells.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
-    /// The lowest corner.
+    /// The corner with the smallest x and y.
     from: [f64; 2],
-    /// The side of a cell.
+    /// The side length of a cell.
     side: f64,
-    /// Corners along x and along y.
+    /// The number of corners along x and along y.
     corners: [usize; 2],
     values: Vec<f64>,
 }
 
-/// The four sides of a cell, counter-clockwise from below, as its corners: columns and rows behind the first.
+/// The four sides of a cell, counter-clockwise from the bottom, each given by its two corners: offsets in columns and
+/// rows from the first corner.
 const SIDES: [[[usize; 2]; 2]; 4] =
     [[[0, 0], [1, 0]], [[1, 0], [1, 1]], [[0, 1], [1, 1]], [[0, 0], [0, 1]]];
 
 impl Grid {
-    /// Values between two opposite corners, at so many cells along the longer side.
+    /// Evaluates `value` over the rectangle between two opposite corners, with `cells` cells along the longer side.
     pub fn new([x0, y0, x1, y1]: [f64; 4], cells: usize, value: impl Fn([f64; 2]) -> f64) -> Self {
         let (wide, high) = ((x1 - x0).abs(), (y1 - y0).abs());
         let side = wide.max(high) / cells.max(1) as f64;
@@ -32,7 +33,8 @@ impl Grid {
         grid
     }
 
-    /// Lines on which the value is `level`, interpolated between corners; the last point of a closed one is its first.
+    /// The lines on which the value is `level`, interpolated linearly between corners. A closed line ends with its
+    /// first point.
     pub fn contour(&self, level: f64) -> Vec<Vec<[f64; 2]>> {
         let mut neighbours: BTreeMap<[[usize; 2]; 2], Vec<[[usize; 2]; 2]>> = BTreeMap::new();
         for row in 1..self.corners[1] {
@@ -44,7 +46,7 @@ impl Grid {
             }
         }
         let mut lines = Vec::new();
-        // Ends at the rim come first: what is left then is closed.
+        // Lines that end at the rim are followed first: those that remain are closed.
         let is_end = |ways: &Vec<_>| ways.len() == 1;
         let ends = neighbours.iter().filter(|(_, ways)| is_end(ways)).map(|(side, _)| *side);
         for begin in ends.chain(neighbours.keys().copied()).collect::<Vec<_>>() {
@@ -72,7 +74,7 @@ impl Grid {
         self.values[row * self.corners[0] + column]
     }
 
-    /// The pairs of a cell's sides between which the line runs.
+    /// The segments of the line within a cell, each as the two sides that it joins.
     fn segments(&self, cell: [usize; 2], level: f64) -> Vec<[[[usize; 2]; 2]; 2]> {
         let corner = |[column, row]: [usize; 2]| [cell[0] + column, cell[1] + row];
         let is_above = |corner| self.value(corner) >= level;
@@ -81,7 +83,7 @@ impl Grid {
         let crossed: Vec<_> = crossed.collect();
         match crossed[..] {
             [a, b] => vec![[a, b]],
-            // A saddle: the middle belongs to the first corner, or cuts it off.
+            // A saddle: the middle is joined to the first corner, or cuts it off.
             [below, right, above, left] => {
                 let corners = [[0, 0], [1, 0], [0, 1], [1, 1]].map(corner);
                 let middle = corners.iter().map(|&it| self.value(it)).sum::<f64>() / 4.0;
@@ -95,7 +97,7 @@ impl Grid {
         }
     }
 
-    /// Where the line crosses a side.
+    /// The point at which the line crosses a side.
     fn crossing(&self, [a, b]: [[usize; 2]; 2], level: f64) -> [f64; 2] {
         let share = (level - self.value(a)) / (self.value(b) - self.value(a));
         let (a, b) = (self.place(a), self.place(b));

@@ -1,13 +1,13 @@
-//! Figures as a table of their points.
+//! Figures as CSV tables of their points.
 
 use std::io::{self, Write};
 
 use crate::Figure;
 
-/// Writes `series,x,y,error`: a row a point, in the order in which they are drawn; an empty cell is none.
+/// Writes the columns `series,x,y,error`: one row per point, in drawing order. An empty cell means no value.
 ///
 /// # Errors
-/// Those of what it is written to.
+/// Errors of the writer.
 pub fn write(to: impl Write, figure: &Figure) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(to);
     table.write_record(["series", "x", "y", "error"])?;
@@ -22,7 +22,7 @@ pub fn write(to: impl Write, figure: &Figure) -> io::Result<()> {
     table.flush()
 }
 
-/// As many digits as tell the number from any other.
+/// The shortest text that is read back as the same number; empty for `NaN`.
 fn cell(number: f64) -> String {
     if number.is_nan() { String::new() } else { number.to_string() }
 }

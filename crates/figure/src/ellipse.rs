@@ -1,18 +1,20 @@
 //! The ellipse of a covariance.
 
-/// χ² of two degrees of freedom, 95 %.
+/// The 95 % quantile of the χ² distribution with two degrees of freedom.
 const CHI_SQUARE_2: f64 = 5.991;
 
-/// The ellipse that holds 95 % of a normal distribution, of whose covariance these are the variance along x, the covariance and
-/// the variance along y: `[a, b, c]`, by which a unit circle's point (u, v) lies on it at (a u, b u + c v) from the centre.
+/// The ellipse that holds 95 % of a normal distribution, from its covariance: the variance along x, the covariance and
+/// the variance along y. Of the result `[a, b, c]`, the point (u, v) of the unit circle gives the point (a u, b u + c
+/// v) of the ellipse, relative to its centre.
 ///
-/// Cholesky's root of the covariance, √χ² times as long: it has the axes' units, and between two roots lies a root.
+/// It is the Cholesky factor of the covariance times √χ²: it has the axes' units, and a value interpolated between two
+/// factors is a factor again.
 pub fn ellipse([xx, xy, yy]: [f64; 3]) -> [f64; 3] {
     let a = xx.max(0.0).sqrt();
     let b = if a > 0.0 { xy / a } else { 0.0 };
-    // Rounding may leave less than nothing.
+    // Rounding may make the difference negative.
     let c = (yy - b * b).max(0.0).sqrt();
-    // `max` makes a number of what is none.
+    // `max` turns `NaN` into a number, so finiteness is checked on the input.
     let is_known = (xx + xy + yy).is_finite();
     [a, b, c].map(|part| if is_known { CHI_SQUARE_2.sqrt() * part } else { f64::NAN })
 }

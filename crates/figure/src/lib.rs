@@ -18,36 +18,36 @@ pub use thin::View;
 /// A diagram of one or more series over two axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// Names its files and its place on the page: lower case, with hyphens.
+    /// The name of its files and of its place on the page: lower case, with hyphens.
     pub id: String,
-    /// What it shows, in a few words.
+    /// The title: what the figure shows, in a few words.
     pub title: String,
-    /// What to see in it.
+    /// The caption: what to see in the figure.
     pub caption: String,
-    /// From left to right.
+    /// The horizontal axis.
     pub x: Axis,
-    /// From below to above.
+    /// The vertical axis.
     pub y: Axis,
-    /// Whether a metre is as long along either axis, as on a map.
+    /// Whether both axes have the same scale, as on a map.
     pub equal: bool,
-    /// What is drawn, the first below the others.
+    /// The series in drawing order: the first lies below the others.
     pub series: Vec<Series>,
 }
 
-/// An axis.
+/// An axis of a figure.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Axis {
-    /// Quantity and unit.
+    /// The label: quantity and unit.
     pub label: String,
-    /// Whether decades are equally long.
+    /// Whether the axis is logarithmic.
     pub logarithmic: bool,
-    /// What is shown at first [default: everything].
+    /// The range that is shown at first [default: everything].
     pub range: Option<[f64; 2]>,
-    /// How many seconds one unit is, where the axis is a time.
+    /// The number of seconds in one unit, if the axis is a time.
     pub seconds: Option<f64>,
 }
 
-/// The least and the greatest of the numbers that are finite; none if there is none.
+/// The least and the greatest of the finite numbers; `None` if there are none.
 fn extent(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     let finite = values.filter(|value| value.is_finite());
     let ends = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
@@ -76,17 +76,18 @@ impl Figure {
         self
     }
 
-    /// Over seconds of a clock that the figures of a page have in common; with the label of the vertical axis.
+    /// Makes the horizontal axis a time in seconds, on a clock that the figures of a page share, and labels the
+    /// vertical axis.
     pub fn over_seconds(self, y: impl Into<String>) -> Self {
         self.axes("time, s", y).clock(1.0)
     }
 
-    /// As [`over_seconds`](Self::over_seconds), in hours.
+    /// Like [`over_seconds`](Self::over_seconds), but in hours.
     pub fn over_hours(self, y: impl Into<String>) -> Self {
         self.axes("time, h", y).clock(3600.0)
     }
 
-    /// The horizontal axis is a time; one unit of it is so many seconds.
+    /// Makes the horizontal axis a time, of which one unit is `seconds` long.
     pub fn clock(mut self, seconds: f64) -> Self {
         self.x.seconds = Some(seconds);
         self
@@ -98,13 +99,13 @@ impl Figure {
         self
     }
 
-    /// Showing these stretches of the axes at first.
+    /// Sets the ranges of the axes that are shown at first.
     pub fn showing(mut self, x: Option<[f64; 2]>, y: Option<[f64; 2]>) -> Self {
         (self.x.range, self.y.range) = (x, y);
         self
     }
 
-    /// A map: a metre is as long along either axis.
+    /// Makes the figure a map: both axes have the same scale.
     pub fn map(mut self) -> Self {
         self.equal = true;
         self

@@ -1,11 +1,12 @@
-//! Paths of a map, thinned by distance: what is left out is no farther from what is drawn than asked.
+//! Thinning of the paths of a map by distance: what is left out is within a given distance of what is drawn.
 
 use std::collections::HashSet;
 use std::ops::Range;
 
 use crate::{Axis, Figure, Mark, Series, extent};
 
-/// The longer side of what is seen of a map at first: its axes where they are said, else what is not hidden.
+/// The longer side of what a map shows at first: of its axis ranges where they are set, else of the series that are not
+/// hidden.
 pub(crate) fn width(figure: &Figure, shown: &[Range<usize>]) -> f64 {
     let seen = figure.series.iter().zip(shown).filter(|(series, _)| !series.hidden);
     let length = |axis: &Axis, values: fn(&Series) -> &[f64]| {
@@ -15,11 +16,11 @@ pub(crate) fn width(figure: &Figure, shown: &[Range<usize>]) -> f64 {
     length(&figure.x, |series| &series.x).max(length(&figure.y, |series| &series.y))
 }
 
-/// Indices of the points that are drawn: of a line, those that keep it within `most` of the whole one, at each time where times
-/// are known, and its ellipses as near theirs; of points, one of those that would be drawn over each other at about the same time.
-/// A gap stays one.
+/// The indices of the points that are drawn. Of a line, those that keep it within `most` of the whole line, at each
+/// time if times are known, and its ellipses within `COARSER` times as much of their own; of points, one of those that
+/// would be drawn over each other at about the same time. Gaps are kept.
 pub(crate) fn indices(series: &Series, shown: Range<usize>, most: f64) -> Vec<usize> {
-    // Marks along a line are what it is about.
+    // The marks along such a line are its content.
     let is_marked = series.mark == Mark::LineAndPoints;
     if most <= 0.0 || is_marked || series.labels.is_some() || series.error.is_some() {
         return shown.collect();
@@ -42,7 +43,7 @@ pub(crate) fn indices(series: &Series, shown: Range<usize>, most: f64) -> Vec<us
         Some(ellipses) => {
             let place = |i: usize| {
                 let ([x, y], [a, b, c]) = (place(i), ellipses[i]);
-                // What is unknown does not change.
+                // An unknown ellipse counts as constant.
                 let coarser = |part: f64| if part.is_nan() { 0.0 } else { part / COARSER };
                 [x, y, coarser(a), coarser(b), coarser(c)]
             };
@@ -51,17 +52,18 @@ pub(crate) fn indices(series: &Series, shown: Range<usize>, most: f64) -> Vec<us
     }
 }
 
-/// Stretches of time in each of which a spot is drawn once.
+/// The number of intervals of time into which a series is divided: in each, a spot is drawn once.
 const STRETCHES: f64 = 500.0;
 
-/// How much coarser ellipses may be than the line: an uncertainty is read to a tenth, and shrinks a little with every measurement.
+/// The factor by which ellipses may be coarser than the line: an uncertainty is read to a tenth, and shrinks a little
+/// with every measurement.
 const COARSER: f64 = 8.0;
 
-/// A line, and how far it may be moved along each of N axes.
+/// A line, and the distance by which it may be moved along each of N axes.
 struct Line<'a, F> {
     times: Option<&'a [f64]>,
     most: f64,
-    /// Where a point is.
+    /// The coordinates of a point.
     place: F,
 }
 
@@ -79,12 +81,13 @@ impl<const N: usize, F: Fn(usize) -> [f64; N]> Line<'_, F> {
         kept
     }
 
-    /// When a point was; if nobody knows, they are taken to be as far apart in time as each other.
+    /// The time of a point; if times are unknown, the points are taken as equally spaced in time.
     fn time(&self, i: usize) -> f64 {
         self.times.map_or(i as f64, |times| times[i])
     }
 
-    /// Each time as far as a straight line comes within the bound of every point at its time: the swinging door, in one pass.
+    /// Appends the points that are kept of a piece. Each straight line goes as far as it stays within the bound of
+    /// every point at the point's time: the swinging-door algorithm, in one pass.
     fn straightened(&self, points: Range<usize>, kept: &mut Vec<usize>) {
         let Some(mut from) = points.clone().next() else { return };
         kept.push(from);
@@ -95,7 +98,7 @@ impl<const N: usize, F: Fn(usize) -> [f64; N]> Line<'_, F> {
                     from = i - 1;
                     kept.push(from);
                 }
-                // Elsewhere at the same time: a jump, of which both ends are kept.
+                // Another place at the same time is a jump, of which both ends are kept.
                 if !Door::OPEN.takes(self.seen(i, from)) {
                     from = i;
                     kept.push(from);
@@ -108,20 +111,21 @@ impl<const N: usize, F: Fn(usize) -> [f64; N]> Line<'_, F> {
         kept.extend((end > from).then_some(end));
     }
 
-    /// How far behind another point it is in time, and how far from it along each axis.
+    /// The time from another point to this one, and the offset along each axis.
     fn seen(&self, i: usize, from: usize) -> (f64, [f64; N]) {
         let (here, there) = ((self.place)(i), (self.place)(from));
         (self.time(i) - self.time(from), std::array::from_fn(|axis| here[axis] - there[axis]))
     }
 }
 
-/// Slopes along each axis with which a straight line passes all points so far.
+/// The range of slopes along each axis with which a straight line passes within the bound of all points so far.
 struct Door<const N: usize>([[f64; 2]; N]);
 
 impl<const N: usize> Door<N> {
     const OPEN: Self = Self([[f64::NEG_INFINITY, f64::INFINITY]; N]);
 
-    /// Whether the line may end at a point so far away. At the same time there is no line but to itself.
+    /// Whether the line may end at a point at this offset. At the time where it begins, it may only end where it
+    /// begins.
     fn takes(&self, (time, way): (f64, [f64; N])) -> bool {
         let mut all = self.0.iter().zip(way);
         let has_slope = |low, high, way: f64| (low..=high).contains(&(way / time));
@@ -130,7 +134,7 @@ impl<const N: usize> Door<N> {
         )
     }
 
-    /// Shuts out the slopes that pass a point too far away.
+    /// Excludes the slopes that miss a point by more than the bound.
     fn close(&mut self, (time, way): (f64, [f64; N]), most: f64) {
         for ([low, high], way) in self.0.iter_mut().zip(way) {
             if time > 0.0 {

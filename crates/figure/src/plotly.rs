@@ -1,14 +1,14 @@
-//! Figures as Plotly takes them: <https://plotly.com/javascript/reference/>.
+//! Figures in the format of Plotly: <https://plotly.com/javascript/reference/>.
 
 use serde_json::{Value, json};
 
 use crate::{Axis, Colour, Figure, Mark, Series, View, extent, thin};
 
-/// The figure for the page: its words, and `data` and `layout` of `Plotly.react`.
+/// The figure for the page: its texts, and `data` and `layout` for `Plotly.react`.
 ///
 /// Colours of paper, text and grid are left to the page, which knows whether it is dark.
 pub fn figure(figure: &Figure, view: View) -> Value {
-    // Of a logarithmic axis the page knows the exponents.
+    // For a logarithmic axis, the page gives exponents.
     let exponents = figure.x.logarithmic && !figure.equal;
     let window =
         view.window.map(|ends| if exponents { ends.map(|e| 10_f64.powf(e)) } else { ends });
@@ -113,11 +113,11 @@ fn css(colour: Colour) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// To a millionth of their span: more is neither seen nor worth sending.
+/// Rounds to a millionth of the values' span: more digits are neither visible nor worth sending.
 fn rounded(mut values: Vec<f64>) -> Vec<f64> {
     let span = extent(values.iter().copied()).map_or(0.0, |[low, high]| high - low);
     if span.is_finite() && span > 0.0 {
-        // A power of ten divides to the shortest digits.
+        // Dividing by a power of ten gives the shortest decimals.
         let scale = 10_f64.powi((6.0 - span.log10()).ceil() as i32);
         for value in &mut values {
             let scaled = (*value * scale).round() / scale;
@@ -184,7 +184,7 @@ mod tests {
         let data = figure(&drawn, View { most_points: 1000, window: Some([-2.0, -1.0]) });
         let shown = data["data"][0]["x"].as_array().unwrap();
         let within = shown.iter().filter_map(Value::as_f64).filter(|x| (0.0099..0.101).contains(x));
-        // To the right half of the window's width more, and the point after it.
+        // On the right, half of the window's width more, and the point after it.
         let last = shown.last().and_then(Value::as_f64).unwrap();
         assert!(within.count() == 11 && (0.1..0.2).contains(&last), "{shown:?}");
     }

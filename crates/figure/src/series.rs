@@ -1,31 +1,31 @@
 use crate::ellipse;
 
-/// Points with a name, and how they are marked.
+/// A named series of points, and how it is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// What the legend calls it.
+    /// The name in the legend.
     pub name: String,
     /// Abscissae; `NaN` interrupts a line.
     pub x: Vec<f64>,
-    /// Ordinates, as many.
+    /// Ordinates, as many as abscissae.
     pub y: Vec<f64>,
-    /// When each point was, in seconds of the clock of [`Figure::over_seconds`](crate::Figure::over_seconds): of a map, whose
-    /// axes are no times.
+    /// The time of each point of a map, whose axes are no times: in seconds of the clock of
+    /// [`Figure::over_seconds`](crate::Figure::over_seconds).
     pub times: Option<Vec<f64>>,
-    /// How uncertain each point of a map is, where that is known: the variance along x, the covariance and the variance along y, in
-    /// the axes' unit squared. The page draws the ellipse of the point at the cursor.
+    /// The covariance of each point of a map, if known: the variance along x, the covariance and the variance along y,
+    /// in the axes' unit squared. The page draws the ellipse of the point at the cursor.
     pub spread: Option<Vec<[f64; 3]>>,
-    /// Half the length of the error bars, where there are any.
+    /// Half the length of the error bars, if there are any.
     pub error: Option<Vec<f64>>,
-    /// What stands beside the points, where anything does.
+    /// Texts beside the points, if there are any.
     pub labels: Option<Vec<String>>,
-    /// How it is drawn.
+    /// The mark with which the series is drawn.
     pub mark: Mark,
-    /// In which colour.
+    /// The colour of the series.
     pub colour: Colour,
-    /// Whether only the legend shows it at first.
+    /// Whether the series is at first shown in the legend only.
     pub hidden: bool,
-    /// Whether it stands back behind the others.
+    /// Whether the series is drawn faintly, behind the others.
     pub faint: bool,
 }
 
@@ -34,32 +34,32 @@ pub struct Series {
 pub enum Mark {
     /// A line through the points.
     Line,
-    /// A broken line: what was published, what is a threshold.
+    /// A dashed line: a published result or a threshold.
     Dashes,
-    /// A line which keeps its value until the next point.
+    /// A line that keeps its value until the next point.
     Steps,
     /// Points, and a line through them.
     LineAndPoints,
     /// Points alone.
     Points,
-    /// Small points, of which there are many.
+    /// Small points, for series with many of them.
     Dots,
-    /// Crosses: what is rejected.
+    /// Crosses, for rejected values.
     Crosses,
 }
 
-/// What a colour stands for, the same in every figure; each is legible on white and on black.
+/// The meaning of a colour, the same in every figure; each colour is legible on white and on black.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Colour {
-    /// What this library makes of it.
+    /// A result of this library.
     Ours,
-    /// What the paper prints, or its method.
+    /// A result that a paper prints, or that of its method.
     Published,
-    /// What nothing can be better than.
+    /// A bound that nothing can be better than.
     Limit,
-    /// What was true, walls, anchors.
+    /// The ground truth, walls, anchors.
     Truth,
-    /// What is refused, or wrong.
+    /// Values that are rejected or wrong.
     Alarm,
     /// Any other series; counted from 0.
     Other(usize),
@@ -89,7 +89,7 @@ impl Colour {
 }
 
 impl Series {
-    /// Points that are marked in some way; where one list is longer, its rest is dropped.
+    /// A series drawn with the given mark; if one list is longer than the other, its excess is dropped.
     pub fn new(name: impl Into<String>, mark: Mark, mut x: Vec<f64>, mut y: Vec<f64>) -> Self {
         let length = x.len().min(y.len());
         x.truncate(length);
@@ -125,12 +125,12 @@ impl Series {
         Self { mark: Mark::Points, ..Self::path(name, points) }
     }
 
-    /// Drawn in another way.
+    /// With another mark.
     pub fn marked(self, mark: Mark) -> Self {
         Self { mark, ..self }
     }
 
-    /// In this colour.
+    /// With another colour.
     pub fn coloured(self, colour: Colour) -> Self {
         Self { colour, ..self }
     }
@@ -155,7 +155,7 @@ impl Series {
         Self { labels: Some(labels), ..self }
     }
 
-    /// Shown by the legend alone at first.
+    /// At first shown in the legend only.
     pub fn hidden(self) -> Self {
         Self { hidden: true, ..self }
     }
@@ -165,7 +165,7 @@ impl Series {
         Some(self.spread.as_ref()?.iter().map(|&spread| ellipse(spread)).collect())
     }
 
-    /// Points and their error bars and labels; a bar or text that is missing is none.
+    /// The number of points. A missing error bar or label of a point is not drawn.
     pub(crate) fn len(&self) -> usize {
         self.x.len().min(self.y.len())
     }

@@ -8,15 +8,16 @@ use plotters::prelude::*;
 
 use crate::{Axis, Figure, Mark, Series, extent};
 
-/// Width and height, px; text is sized for half a page.
+/// Width and height of a diagram, px; text is sized for half a page.
 const SIZE: (u32, u32) = (720, 430);
-/// A map that is to keep its proportions.
+/// Width and height of a map, which keeps its proportions, px.
 const MAP: (u32, u32) = (720, 620);
 
-/// Names of more series would hide the figure, and there are not as many colours: the legend is left out.
+/// The largest number of series for which a legend is drawn: the names of more would hide the figure, and there are not
+/// as many colours.
 const MOST_NAMES: usize = 20;
 
-/// What the drawing of a figure ends with.
+/// The result of drawing a figure.
 type Drawn<'a> = Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>>;
 
 /// The figure as a drawing on white; empty if the drawing library refuses it.
@@ -70,7 +71,7 @@ where
         .draw()?;
     for series in figure.series.iter().filter(|series| !series.hidden) {
         let [r, g, b] = series.colour.rgb().map(|part| {
-            // As on the page, on white.
+            // The same opacity as on the page, over white.
             let faint = (0.45 * f64::from(part) + 0.55 * 255.0) as u8;
             if series.faint { faint } else { part }
         });
@@ -133,7 +134,7 @@ where
     area.present()
 }
 
-/// What an axis reaches from and to: all that is shown, and a little more.
+/// The ends of an axis: the range if one is set, else the extent of all that is shown, with a margin.
 fn bounds(figure: &Figure, axis: &Axis, of: fn(&Series) -> &Vec<f64>) -> Range<f64> {
     if let Some([low, high]) = axis.range {
         return low..high;
@@ -150,7 +151,7 @@ fn bounds(figure: &Figure, axis: &Axis, of: fn(&Series) -> &Vec<f64>) -> Range<f
     low - margin..high + margin
 }
 
-/// Widens the shorter axis until a metre is as long along both in the plot area.
+/// Widens the shorter axis until both have the same scale in the plot area.
 fn equally_long(xs: Range<f64>, ys: Range<f64>) -> (Range<f64>, Range<f64>) {
     let (wide, high) = (f64::from(MAP.0) - 86.0, f64::from(MAP.1) - 92.0);
     let metres_a_pixel = ((xs.end - xs.start) / wide).max((ys.end - ys.start) / high);

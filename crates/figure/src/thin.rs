@@ -7,13 +7,13 @@ use crate::{Figure, Series, outline};
 /// What a screen shows of a figure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    /// How many points of a series it can show, about.
+    /// The approximate number of points of a series that the screen can show.
     pub most_points: usize,
-    /// From where to where along the horizontal axis, where it is zoomed in; of a map, from when to when, s.
+    /// The range of the horizontal axis, if it is zoomed in; of a map, the range of times, s.
     pub window: Option<[f64; 2]>,
 }
 
-/// Indices of points that look like all of them in this view.
+/// The indices of points of each series that look like all of them in this view.
 pub(crate) fn of(figure: &Figure, view: View) -> Vec<Vec<usize>> {
     if !figure.equal {
         return figure.series.iter().map(|series| indices(series, view)).collect();
@@ -31,7 +31,7 @@ pub(crate) fn of(figure: &Figure, view: View) -> Vec<Vec<usize>> {
         .collect()
 }
 
-/// Points of a map that belong to a stretch of time; all where that is not known.
+/// The points of a map within a range of times; all of them if the range or sorted times are missing.
 fn then(series: &Series, window: Option<[f64; 2]>) -> Range<usize> {
     let all = 0..series.len();
     let (Some([low, high]), Some(times)) = (window, &series.times) else { return all };
@@ -43,7 +43,7 @@ fn then(series: &Series, window: Option<[f64; 2]>) -> Range<usize> {
     begin..times.partition_point(|&time| time <= high).max(begin)
 }
 
-/// The lowest and the highest of each stretch, so that no peak is lost.
+/// The lowest and the highest point of each interval, so that no peak is lost.
 fn indices(series: &Series, view: View) -> Vec<usize> {
     let seen = seen(series, view.window);
     if seen.len() <= view.most_points {
@@ -56,7 +56,7 @@ fn indices(series: &Series, view: View) -> Vec<usize> {
         let by_height = |&a: &usize, &b: &usize| series.y[a].total_cmp(&series.y[b]);
         let places = || (begin..end).filter(|&i| !series.y[i].is_nan());
         let (low, high) = (places().min_by(by_height), places().max_by(by_height));
-        // A gap, too, must stay one.
+        // Gaps must be kept as well.
         let gap = (begin..end).find(|&i| series.y[i].is_nan());
         let mut chosen: Vec<_> = [low, high, gap].into_iter().flatten().collect();
         chosen.sort_unstable();
@@ -71,7 +71,7 @@ fn indices(series: &Series, view: View) -> Vec<usize> {
     kept
 }
 
-/// What lies in the window, and half as much on either side to move about.
+/// The points in the window, and in half its width on either side, for panning.
 fn seen(series: &Series, window: Option<[f64; 2]>) -> Range<usize> {
     let all = 0..series.len();
     let Some([low, high]) = window.filter(|_| series.x.is_sorted()) else { return all };

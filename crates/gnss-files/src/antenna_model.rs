@@ -1,14 +1,15 @@
-//! Editions of the antennas of the International GNSS Service.
+//! Editions of the antenna calibrations of the International GNSS Service.
 
 use std::fmt;
 
-/// Where this begins, whatever is larger or smaller, an edition is named.
+/// The prefix of an edition's name, in upper or lower case.
 const PREFIX: &[u8] = b"igs";
 
-/// An edition of the antennas of the International GNSS Service (IGS).
+/// An edition of the antenna calibrations of the International GNSS Service (IGS).
 ///
-/// Orbits and clocks go with the antennas of satellites that they were made with: another edition has them up to two
-/// decimetres nearer to the Earth or farther, as it follows another scale of the Earth's frame, and the height shows a part.
+/// Orbits and clocks are consistent only with the satellite antennas that they were made with: another edition places
+/// them up to two decimetres nearer to the Earth or farther, as it follows another scale of the terrestrial frame, and
+/// part of that appears in the height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum AntennaModel {
@@ -23,7 +24,7 @@ pub enum AntennaModel {
 }
 
 impl AntennaModel {
-    /// The edition that is named first, as in `IGS20_2417` or `igs14_2108.atx`.
+    /// The first edition named in a text such as `IGS20_2417` or `igs14_2108.atx`.
     pub(crate) fn named(text: &[u8]) -> Option<Self> {
         text.windows(PREFIX.len() + 2).find_map(|window| {
             let (prefix, year) = window.split_at(PREFIX.len());
@@ -40,9 +41,11 @@ impl AntennaModel {
         })
     }
 
-    /// By how much `igs20.atx` moved satellites of a type along Z against `igs14.atx`, all alike, m (its header, "Major changes
-    /// w.r.t. igs14.atx"). Of GPS it tells that of block IIIA alone, and that the others were estimated one by one: moved by itself,
-    /// that block would no longer go with them.
+    /// The shift along Z that `igs20.atx` applies to all satellites of a type relative to `igs14.atx`, m (its header,
+    /// "Major changes w.r.t. igs14.atx").
+    ///
+    /// For GPS the header gives only that of block IIIA, and says that the others were estimated one by one: block IIIA
+    /// moved alone would no longer be consistent with them.
     pub(crate) fn moved_by_igs20(kind: &str, code: &str) -> Option<f64> {
         match kind {
             "GALILEO-1" | "GALILEO-2" if code != "E102" => Some(0.155_73),

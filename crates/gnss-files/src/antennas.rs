@@ -11,44 +11,45 @@ use crate::system::{System, satellite};
 use crate::text::{Line, Lines, Text};
 use crate::time::GpsTime;
 
-/// Beyond any calibration's grid.
+/// Upper limit on the steps of a grid, beyond that of any calibration.
 const MOST_ANGLES: f64 = 400.0;
 
 /// The phase centre of an antenna on one frequency: an offset, and a table of variations.
 ///
-/// The table has one row of zenith angles (receivers) or nadir angles (satellites) without azimuth and, if the antenna
-/// was calibrated so, one such row for each azimuth.
+/// The table has one row of zenith angles (receivers) or nadir angles (satellites) without azimuth and, if the
+/// calibration covers azimuth, one such row for each azimuth.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PhaseCentre {
-    /// The mean phase centre from the antenna's reference point, m: north, east and up of a receiver's; X, Y and Z of
-    /// the satellite's body, from its centre of mass, of a satellite's.
+    /// The mean phase centre, m: for a receiver north, east and up of the antenna's reference point; for a satellite
+    /// along X, Y and Z of its body from the centre of mass.
     pub offset: [f64; 3],
     /// The first angle of a row, degrees (`ZEN1`).
     pub first: f64,
     /// The step between the angles of a row, degrees (`DZEN`).
     pub step: f64,
-    /// The variations without azimuth, m (`NOAZI`).
+    /// The azimuth-independent variations, m (`NOAZI`).
     pub mean: Vec<f64>,
-    /// The step between the azimuths, degrees (`DAZI`); zero without them.
+    /// The step between the azimuths, degrees (`DAZI`); zero if the table has none.
     pub azimuth_step: f64,
-    /// The rows of the azimuths from 0° to 360° one after the other, each as long as `mean`, m; or empty.
+    /// The rows for the azimuths from 0° to 360° one after the other, each as long as `mean`, m; empty if there are
+    /// none.
     pub by_azimuth: Vec<f64>,
 }
 
 /// An antenna.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Antenna {
-    /// Type of the antenna, and the radome of a receiver's, as in the file.
+    /// The antenna type, with the radome in the case of a receiver, as in the file.
     pub name: String,
-    /// The satellite's number for life, `E210` for example; empty of a receiver's.
+    /// The satellite's permanent number (SVN), for example `E210`; empty for a receiver.
     pub code: String,
-    /// The edition that the antenna belongs to, if it says so (`SINEX CODE`).
+    /// The edition to which the antenna belongs, if the file tells it (`SINEX CODE`).
     pub model: Option<AntennaModel>,
-    /// The phase centres by system and band, the digit of RINEX 3.
+    /// The phase centres by system and band (the digit of RINEX 3).
     centres: Vec<((System, u8), PhaseCentre)>,
-    /// The first instant at which a satellite has this antenna; none if it always had.
+    /// The first instant at which a satellite uses this antenna; `None` if it always has.
     pub valid_from: Option<GpsTime>,
-    /// The last instant at which a satellite has this antenna; none if it still has.
+    /// The last instant at which a satellite uses this antenna; `None` if it still does.
     pub valid_until: Option<GpsTime>,
 }
 
@@ -58,8 +59,10 @@ impl Antenna {
             && self.valid_until.is_none_or(|until| time <= until)
     }
 
-    /// The antenna as another edition has it, where that is known: the same one if it belongs to that edition, or to none that it
-    /// names; between `igs14` and `igs20` those of Galileo, of which the header of `igs20.atx` tells by how much it moved them.
+    /// The antenna as another edition has it, where that is known.
+    ///
+    /// An antenna of that edition, or of no named edition, is returned as it is. Between `igs14` and `igs20` only the
+    /// antennas of Galileo are known: the header of `igs20.atx` tells by how much it moved them.
     pub fn in_model(&self, model: AntennaModel) -> Option<Self> {
         let moved = match (self.model, model) {
             (None, _) => return Some(self.clone()),
@@ -91,16 +94,17 @@ impl Antenna {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Antennas {
     satellites: Vec<(u8, Antenna)>,
-    /// The receiver's, or else the same type without a radome.
+    /// The receiver's antenna, or else the same type without a radome.
     pub receiver: Option<Antenna>,
     /// Warnings about the file.
     pub warnings: Vec<Warning>,
 }
 
 impl Antennas {
-    /// Reads files for a receiver whose antenna's type and radome stand as in a RINEX header
-    /// ([`Observations::antenna`](crate::Observations::antenna)). Of an antenna in two of them that of the later is
-    /// taken.
+    /// Reads files for a receiver whose antenna type and radome are given as in a RINEX header
+    /// ([`Observations::antenna`](crate::Observations::antenna)).
+    ///
+    /// If two files hold the same antenna, the later file takes precedence.
     ///
     /// # Errors
     /// [`Error`]: the file, the line, what was expected there and what was found.
@@ -109,10 +113,10 @@ impl Antennas {
         Self::parse(&texts?, receiver)
     }
 
-    /// Reads files in memory, as [`Self::read`].
+    /// Reads files in memory, like [`Self::read`].
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// Those of [`Self::read`].
     pub fn parse(texts: &[Text], receiver: &str) -> Result<Self, Error> {
         let mut antennas = Self::default();
         let mut nearest = None;
@@ -130,7 +134,7 @@ impl Antennas {
         Ok(antennas)
     }
 
-    /// Adds the antennas of a file; `nearest` becomes the receiver's without a radome.
+    /// Adds the antennas of a file; `nearest` becomes the receiver's antenna type without a radome.
     fn add(
         &mut self,
         text: &Text,
@@ -171,14 +175,14 @@ impl Antennas {
         Ok(())
     }
 
-    /// The antenna of a satellite at a time.
+    /// The antenna that a satellite uses at a time.
     pub fn satellite(&self, prn: u8, time: GpsTime) -> Option<&Antenna> {
         let fits = |(number, antenna): &&(u8, Antenna)| *number == prn && antenna.is_valid(time);
         self.satellites.iter().rev().find(fits).map(|(_, antenna)| antenna)
     }
 }
 
-/// A type in 16 columns and a radome in 4.
+/// The name of an antenna: a type in 16 columns and a radome in 4.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Name {
     kind: [u8; 16],
@@ -200,7 +204,7 @@ impl Name {
     }
 }
 
-/// Reads the lines of an antenna behind the one that tells its type.
+/// Reads the lines of an antenna after the one with its type.
 fn antenna(start: &Line<'_>, lines: &mut Lines<'_>) -> Result<Antenna, Error> {
     let (name, code) = (start.text(0, 20), start.text(40, 50));
     let mut antenna = Antenna { name, code, ..Antenna::default() };
@@ -228,7 +232,7 @@ fn antenna(start: &Line<'_>, lines: &mut Lines<'_>) -> Result<Antenna, Error> {
     }
 }
 
-/// The system and the band of a frequency as `G01`; none of one that no carriers are on.
+/// The system and the band of a frequency such as `G01`; `None` for one on which there are no carriers.
 fn band(frequency: &[u8]) -> Option<(System, u8)> {
     let &[letter, b'0', band] = frequency else { return None };
     let system = System::of_letter(letter)?;
@@ -242,7 +246,7 @@ fn band(frequency: &[u8]) -> Option<(System, u8)> {
 
 const VALIDITY: [usize; 7] = [0, 6, 12, 18, 24, 30, 43];
 
-/// The angles to which the numbers of a pattern belong, degrees.
+/// The angles at which a pattern is tabulated, degrees.
 #[derive(Debug, Default)]
 struct Grid {
     first: f64,
@@ -294,7 +298,7 @@ impl Grid {
     }
 }
 
-/// Number of points of a grid.
+/// The number of points of a grid; `None` if it is too large or the step does not divide it.
 fn steps(first: f64, last: f64, step: f64) -> Option<usize> {
     let steps = (last - first) / step;
     let fits = (0.0..MOST_ANGLES).contains(&steps) && (steps - steps.round()).abs() < 1e-6;

@@ -1,4 +1,4 @@
-//! Biases of satellites' codes and phases: Bias-SINEX 1.00, absolute (OSB) and, of codes, differential (DSB).
+//! Code and phase biases of satellites: Bias-SINEX 1.00, absolute (OSB) and, for codes, differential (DSB).
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -13,23 +13,23 @@ use crate::time::GpsTime;
 /// Speed of light, m/s.
 pub(crate) const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
-/// The bias of one code or phase of a satellite, or of one code less another.
+/// The bias of one code or phase of a satellite, or of one code minus another.
 #[derive(Debug, Clone, PartialEq)]
 struct Bias {
     signal: Signal,
-    /// The code that is taken off, of a differential bias.
+    /// The code that is subtracted, if the bias is differential.
     less: Option<Signal>,
-    /// The first instant and the last.
+    /// The first and the last instant of validity; an open end is `None`.
     span: [Option<GpsTime>; 2],
     metres: f64,
 }
 
-/// Biases of satellites' codes and phases, by number.
+/// Code and phase biases of satellites, by satellite number.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Biases(BTreeMap<u8, Vec<Bias>>);
 
 impl Biases {
-    /// Reads files. Where two hold the same bias, that of the later one is taken.
+    /// Reads files. Where two hold the same bias, the later file takes precedence.
     ///
     /// # Errors
     /// [`Error`]: the file, the line, what was expected there and what was found.
@@ -38,10 +38,10 @@ impl Biases {
         Self::parse(&texts?)
     }
 
-    /// Reads files in memory, as [`Self::read`].
+    /// Reads files in memory, like [`Self::read`].
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// Those of [`Self::read`].
     pub fn parse(texts: &[Text]) -> Result<Self, Error> {
         let mut biases = Self::default();
         for text in texts {
@@ -75,8 +75,8 @@ impl Biases {
         Ok(())
     }
 
-    /// What the two codes of a satellite are too long at a time, m, beside those to which the clocks of satellites refer;
-    /// none of a pair of which one is not known.
+    /// The biases by which the two codes of a satellite are too long at a time, m, relative to the codes to which
+    /// satellite clocks refer; `None` for a pair of which either is unknown.
     pub fn of_codes(
         &self,
         satellite: u8,
@@ -102,8 +102,10 @@ impl Biases {
         both(&|code| absolute(&biases, code)).or_else(|| both(&differential))
     }
 
-    /// What the two phases of a satellite are too long at a time, m, so that the rest of each is a whole number of cycles
-    /// beside the receiver's own bias; none of a pair of which one is not known.
+    /// The biases by which the two phases of a satellite are too long at a time, m; `None` for a pair of which either
+    /// is unknown.
+    ///
+    /// Without them each phase is a whole number of cycles apart from the receiver's own bias.
     pub fn of_phases(
         &self,
         satellite: u8,
@@ -115,7 +117,7 @@ impl Biases {
         Some([absolute(&biases, first?)?, absolute(&biases, second?)?])
     }
 
-    /// Whether there is the bias of any phase.
+    /// Whether any phase bias is known.
     pub fn have_phases(&self) -> bool {
         self.0.values().flatten().any(|bias| bias.signal.phase)
     }
@@ -137,7 +139,8 @@ impl Bias {
     }
 }
 
-/// The bias of a line and its satellite; none of a receiver's, and none of one phase less another or in other units than ns.
+/// The satellite and the bias of a line; `None` for a receiver's bias, for one phase minus another, and for a phase
+/// bias in units other than ns.
 fn bias(line: &Line<'_>) -> Result<Option<(u8, Bias)>, Error> {
     let kind = line.columns(1, 5);
     if !matches!(kind, b"OSB" | b"DSB") || !line.columns(15, 24).is_empty() {
@@ -165,7 +168,7 @@ fn bias(line: &Line<'_>) -> Result<Option<(u8, Bias)>, Error> {
     Ok(Some((satellite, Bias { signal, less, span, metres: value * 1e-9 * SPEED_OF_LIGHT })))
 }
 
-/// The instant `year:day of year:second` from a column on; none if it is open, as zeros say.
+/// The instant `year:day of year:second` that begins in a column; `None` if it is open, which zeros stand for.
 fn instant(line: &Line<'_>, from: usize) -> Result<Option<GpsTime>, Error> {
     let parts = [(0, 4), (5, 8), (9, 14)].map(|(a, b)| integer(line.columns(from + a, from + b)));
     let [Some(year), Some(day), Some(second)] = parts else {
@@ -204,7 +207,7 @@ mod tests {
         both(of(1, [b"C1C", b"C2L"], at(0, 10.0)), [9.7876, 16.3019]);
         assert_eq!(of(1, [b"C1C", b"C2X"], at(0, 10.0)), None, "one of them is not known");
         assert_eq!(of(1, [b"C1C", b"C2L"], at(2, 0.0)), None, "another day");
-        // C1W and C2W are what the clocks refer to; biases turned round count, too.
+        // Satellite clocks refer to C1W and C2W; biases given in the opposite direction count, too.
         both(of(2, [b"C1C", b"C2L"], at(900, 0.0)), [-1.5, 0.5]);
         both(of(2, [b"C1C", b"C2W"], at(0, 0.0)), [-1.5, 0.0]);
         let codes = [signal(b'E', b"C1C"), signal(b'E', b"C7Q")];
@@ -224,7 +227,7 @@ mod tests {
         assert!((first - metres(16.3019)).abs() < 1e-9 && (second - metres(-1.941)).abs() < 1e-9);
         assert_eq!(of(phases, 2), None, "another day");
         assert_eq!(of([phases[0], signal(b'G', b"L2L")], 0), None);
-        // In cycles they are left out, as nobody says of which length.
+        // Biases in cycles are left out, as the file does not tell the length of a cycle.
         assert!(read.have_phases() && !Biases::parse(&[text(biases())])?.have_phases());
         Ok(())
     }

@@ -11,10 +11,10 @@ use crate::system::{System, satellite};
 use crate::text::{Line, Lines, Text};
 use crate::time::GpsTime;
 
-/// A bias as large as this stands for one that is not known, s.
+/// A bias of this size or more stands for an unknown one, s.
 const NO_BIAS: f64 = 0.9;
 
-/// Clocks of one solution are the same in all its files, s.
+/// Tolerance within which two clock biases of a satellite at one instant are of the same solution, s.
 const SAME_CLOCK: f64 = 3e-11;
 
 /// The clock of a satellite at one instant.
@@ -26,13 +26,13 @@ pub struct ClockSample {
     pub bias: f64,
 }
 
-/// Clocks of satellites, which are called by number ([`Observed::prn`](crate::Observed::prn)).
+/// Clocks of satellites, which are identified by number ([`Observed::prn`](crate::Observed::prn)).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Clocks {
     samples: PerSatellite<ClockSample>,
-    /// Wide-lane biases of satellites, of the days of their files.
+    /// Wide-lane biases, cycles, by day (modified Julian date) and satellite.
     wide_lanes: BTreeMap<(i32, u8), f64>,
-    /// The edition of the satellites' antennas that the files were made with, as the first of them to say so has it
+    /// The edition of the satellite antennas with which the files were made, from the first file that tells it
     /// (`SYS / PCVS APPLIED`).
     pub antenna_model: Option<AntennaModel>,
     /// Warnings about the files.
@@ -40,8 +40,8 @@ pub struct Clocks {
 }
 
 impl Clocks {
-    /// Reads files in any order, such as those of three days. Where two hold the same instant, that of the file that
-    /// begins later is taken.
+    /// Reads files in any order, such as those of three days. Where two hold the same instant, the file that begins
+    /// later takes precedence.
     ///
     /// # Errors
     /// [`Error`]: the file, the line, what was expected there and what was found.
@@ -50,10 +50,10 @@ impl Clocks {
         Self::parse(&texts?)
     }
 
-    /// Reads files in memory, as [`Self::read`].
+    /// Reads files in memory, like [`Self::read`].
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// Those of [`Self::read`].
     pub fn parse(texts: &[Text]) -> Result<Self, Error> {
         let mut clocks = Self::default();
         let files: Result<Vec<_>, _> =
@@ -72,12 +72,13 @@ impl Clocks {
         Ok(clocks)
     }
 
-    /// The samples of a satellite in the order of time; none of one that the files do not know.
+    /// The samples of a satellite in chronological order; empty for a satellite that the files do not know.
     pub fn satellite(&self, prn: u8) -> &[ClockSample] {
         self.samples.of(prn)
     }
 
-    /// The samples of a satellite before and after a time, or twice the one at that time; none outside of the samples.
+    /// The samples of a satellite before and after a time, or twice the sample at that time; `None` outside the
+    /// samples.
     pub fn around(&self, prn: u8, time: GpsTime) -> Option<[&ClockSample; 2]> {
         let samples = self.satellite(prn);
         let after = samples.partition_point(|sample| sample.time < time);
@@ -86,9 +87,11 @@ impl Clocks {
         Some([&samples[earlier], later])
     }
 
-    /// Wide-lane biases by day (modified Julian date) and satellite, cycles of the wide lane, as integer clocks of CNES/CLS have
-    /// them in the comments of their header (`WL`): added to a satellite's Melbourne–Wübbena combination, they make it a whole
-    /// number beside the receiver's own bias (Loyer et al. 2012).
+    /// Wide-lane biases by day (modified Julian date) and satellite, in cycles of the wide lane, from the header
+    /// comments (`WL`) of CNES/CLS integer clocks.
+    ///
+    /// Added to a satellite's Melbourne–Wübbena combination, such a bias makes it a whole number apart from the
+    /// receiver's own bias (Loyer et al. 2012).
     pub fn wide_lanes(&self) -> impl Iterator<Item = ((i32, u8), f64)> {
         self.wide_lanes.iter().map(|(key, bias)| (*key, *bias))
     }
@@ -117,7 +120,7 @@ fn parse_file(text: &Text, clocks: &mut Clocks) -> Result<PerSatellite<ClockSamp
                     samples.push(prn, sample);
                 }
             }
-            // Of other satellites, of receivers, and lines that go on.
+            // Records of other satellites and of receivers, and continuation lines.
             [b'A' | b'M', b'S', b' ', ..]
             | [b'A' | b'C' | b'D', b'R', b' ', ..]
             | [b' ', ..]
@@ -151,7 +154,7 @@ fn header(text: &Text, lines: &mut Lines<'_>, clocks: &mut Clocks) -> Result<(),
                 clocks.antenna_model = clocks.antenna_model.or_else(told);
             }
             b"COMMENT" if line.bytes.starts_with(b"WL ") => {
-                // Of other systems, and other things that a comment may say.
+                // Comments about other systems or about something else are ignored.
                 if let Some((day, prn, bias)) = wide_lane(line.bytes) {
                     clocks.wide_lanes.insert((day, prn), bias);
                 }
@@ -174,7 +177,7 @@ fn wide_lane(bytes: &[u8]) -> Option<(i32, u8, f64)> {
     Some((time.day(), prn, decimal(fields.nth(1)?)?))
 }
 
-/// Times of Galileo and of QZSS are those of GPS to some nanoseconds.
+/// Accepts the time systems of GPS, Galileo and QZSS, which agree to some nanoseconds.
 fn time_system(line: &Line<'_>) -> Result<(), Error> {
     match line.columns(0, 20) {
         b"" | b"GPS" | b"GAL" | b"QZS" => Ok(()),
@@ -185,11 +188,13 @@ fn time_system(line: &Line<'_>) -> Result<(), Error> {
     }
 }
 
-/// A date and time as it is written, and what it means.
+/// A date and time as written, and the instant that it means.
 type Dated<'a> = Option<(&'a [u8], GpsTime)>;
 
-/// Columns differ between versions, the order of the fields does not. The satellites of an epoch have one date: it is read
-/// once. Without a satellite if none has the number.
+/// Reads a clock record. Columns differ between versions, but the order of the fields does not.
+///
+/// The satellites of an epoch share one date, which is read only once. The satellite is `None` if no satellite has the
+/// number.
 fn record<'a>(bytes: &'a [u8], dated: &mut Dated<'a>) -> Option<(Option<u8>, ClockSample)> {
     let (_, rest) = first_field(bytes)?;
     let (letter, digits, rest) = match first_field(rest)? {
@@ -218,7 +223,7 @@ fn record<'a>(bytes: &'a [u8], dated: &mut Dated<'a>) -> Option<(Option<u8>, Clo
     Some((prn, ClockSample { time, bias: decimal(bias)? }))
 }
 
-/// The date and time that a text begins with, and what follows it.
+/// The date and time at the beginning of a text, and the rest of the text.
 fn date(text: &[u8]) -> Option<(GpsTime, &[u8])> {
     let (mut calendar, mut rest) = ([0; 5], text);
     for number in &mut calendar {
@@ -230,8 +235,8 @@ fn date(text: &[u8]) -> Option<(GpsTime, &[u8])> {
     Some((GpsTime::from_calendar(calendar, decimal(second)?)?, rest))
 }
 
-/// Whether a number in the format E19.12 is there to the end of its exponent: a line that was cut off holds the
-/// beginning of a number, which is another one.
+/// Whether a number in the format E19.12 is complete to the end of its exponent: a truncated one would read as another
+/// number.
 fn is_whole(field: &[u8]) -> bool {
     let exponent = field.iter().position(|byte| matches!(byte, b'E' | b'e' | b'D' | b'd'));
     let exponent = exponent.map_or(&[][..], |start| &field[start..]);

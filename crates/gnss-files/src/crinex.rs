@@ -1,8 +1,8 @@
 //! Hatanaka compression of observations: CRINEX 1.0 and 3.0.
 //!
-//! Lines are stored as what changed since the epoch before: texts character by character, numbers as
-//! differences of some order since an arc began. Each observable of a satellite has an arc of its own: those that nobody
-//! reads need not be followed.
+//! Each line is stored as its changes since the epoch before: texts character by character, numbers as differences of
+//! some order since an arc began. Each observable of a satellite has an arc of its own, so the arcs of unused
+//! observables need not be followed.
 
 mod arcs;
 mod systems;
@@ -13,22 +13,23 @@ use crate::error::Error;
 use crate::fields::integer;
 use crate::text::{Line, Lines, Text};
 
-/// More satellites or observables than any file has.
+/// Upper limit on the number of satellites or observables: no file has so many.
 const MOST: usize = 999;
 
-/// Observables of a satellite in a line of RINEX 2.
+/// The number of observables in a line of RINEX 2.
 const IN_A_LINE: usize = 5;
 
-/// Line in place of an epoch that was cut off.
+/// The line that replaces an epoch that was cut off.
 const CUT: &[u8] = b"> cut off";
 
-/// Whether a text is compressed so.
+/// Whether a text is in Compact RINEX.
 pub(crate) fn is_compressed(bytes: &[u8]) -> bool {
     bytes.get(60..).is_some_and(|label| label.starts_with(b"CRINEX VERS"))
 }
 
-/// The RINEX file as it was, but for what nothing here needs, which is blank: the receiver's clock offsets, flags without an
-/// observation, and observables other than the codes and phases that can be used. An epoch that was cut off at the end of the file is only marked.
+/// Restores the RINEX file. Whatever this crate does not need is blank: the receiver's clock offsets, flags without an
+/// observation, and observables other than the codes and phases that can be used. An epoch that was cut off at the end
+/// of the file is only marked.
 ///
 /// # Errors
 /// The line of the compressed file, and what was expected there.
@@ -61,7 +62,7 @@ pub(crate) fn decompress(text: &Text, largest: usize) -> Result<Vec<u8>, Error> 
         let result = decoder.epoch(&line, &mut lines);
         let at_end = lines.is_at_end();
         if at_end && (result.is_err() || !text.ends_with_line_break()) {
-            // In place of this epoch; whoever reads the observations will say so.
+            // The mark replaces this epoch; the reader of the observations reports it.
             decoder.out.truncate(before);
             decoder.out.extend_from_slice(CUT);
             break;
@@ -79,14 +80,14 @@ struct Decoder {
     compact_version: i32,
     version: i32,
     systems: Systems,
-    /// The line of the epoch before.
+    /// The line of the preceding epoch.
     epoch: Vec<u8>,
     satellites: Vec<Satellite>,
     out: Vec<u8>,
 }
 
 impl Decoder {
-    /// Copies a line of a header, and takes what it says of observables.
+    /// Copies a header line, and notes the observables it declares.
     fn copy(&mut self, line: &Line<'_>) -> Result<(), Error> {
         self.put(line.bytes);
         self.systems.take(line, self.version)
@@ -97,12 +98,12 @@ impl Decoder {
         end_line(&mut self.out);
     }
 
-    /// Unpacks an epoch or event that begins with a line.
+    /// Unpacks the epoch or event that begins with `line`.
     fn epoch<'a>(&mut self, line: &Line<'a>, lines: &mut Lines<'a>) -> Result<(), Error> {
         let old = self.version < 3;
         let (mark, flag, list) = if old { (b'&', 28, 32) } else { (b'>', 31, 41) };
         match line.bytes.first() {
-            // Lines to be ignored, and the end of a file of DOS.
+            // Lines to be ignored, and the end-of-file character of DOS.
             Some(b'&') if !old => return Ok(()),
             Some(0x1a) => return Ok(()),
             Some(&first) if first == mark => {
@@ -124,7 +125,7 @@ impl Decoder {
         let count = count.filter(|&count| count <= MOST);
         let count = count.ok_or_else(|| line.expected("how many satellites or lines follow"))?;
         if !matches!(columns(flag, flag + 1), b"" | b"0" | b"1") {
-            // An event; what follows it begins anew.
+            // An event: the epoch after it starts anew.
             let epoch = std::mem::take(&mut self.epoch);
             self.put(&epoch);
             for _ in 0..count {
@@ -142,7 +143,7 @@ impl Decoder {
             let used =
                 system.ok_or_else(|| line.error("expected a satellite system of the header"))?;
             if !used.contains(&true) || (old && !matches!(name[0], b'G' | b' ')) {
-                // What it holds is not looked at, but a line that was lost is missed.
+                // The content is not looked at, but a missing line is detected.
                 if matches!(line.column(0), b'>' | b'&') {
                     return Err(line.expected("a satellite's observations"));
                 }
@@ -161,9 +162,10 @@ impl Decoder {
         Ok(())
     }
 
-    /// Writes the line of an epoch, in RINEX 2 twelve satellites in each, and checks that they are there.
+    /// Writes the line of an epoch, or in RINEX 2 lines of twelve satellites each, and checks that all satellites are
+    /// listed.
     fn put_epoch(&mut self, list: usize, count: usize, line: &Line<'_>) -> Result<(), Error> {
-        // Blanks at its end may have been cut.
+        // Trailing blanks may have been cut off.
         let last = self.epoch.iter().rposition(|&byte| byte != b' ').unwrap_or_default();
         let end = list + 3 * count;
         if last >= end || (count > 0 && last + 3 < end) {
@@ -183,7 +185,7 @@ impl Decoder {
         Ok(())
     }
 
-    /// Writes the lines of a satellite of so many observables without them.
+    /// Writes the lines of a satellite with blanks in place of its `observables`.
     fn put_blank(&mut self, name: [u8; 3], observables: usize) {
         if self.version >= 3 {
             self.out.extend_from_slice(&name);

@@ -1,4 +1,4 @@
-//! Where the Earth's axis is: IGS ERP.
+//! Polar motion: IGS ERP.
 
 use std::path::Path;
 
@@ -7,17 +7,17 @@ use crate::fields::{blank_separated, decimal};
 use crate::text::{Line, Text};
 use crate::time::GpsTime;
 
-/// Outside its samples a file serves for so long, s: the axis goes 0.01″ in that time at most.
+/// How far outside its samples a file is used, s: the pole moves 0.01″ in that time at most.
 const BEYOND: f64 = 2.0 * 86_400.0;
-/// The axis has not been farther off than this, ″.
+/// The largest plausible pole coordinate, ″: the pole has not been farther off.
 const FARTHEST: f64 = 1.0;
-/// A unit of the file, ″.
+/// The unit of pole coordinates in the file, ″.
 const UNIT: f64 = 1e-6;
 
-/// The Earth's axis over its crust, from a file of the Earth's rotation.
+/// The motion of the Earth's rotation axis relative to its crust, from an Earth rotation file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EarthRotation {
-    /// In the order of time; x towards Greenwich and y towards 90° west, ″.
+    /// The pole in chronological order; x towards Greenwich and y towards 90° west, ″.
     samples: Vec<(GpsTime, [f64; 2])>,
 }
 
@@ -30,10 +30,10 @@ impl EarthRotation {
         Self::parse(&Text::read(path)?)
     }
 
-    /// Reads a file in memory, as [`Self::read`].
+    /// Reads a file in memory, like [`Self::read`].
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// Those of [`Self::read`].
     pub fn parse(text: &Text) -> Result<Self, Error> {
         let mut lines = text.lines();
         if !lines.next().is_some_and(|first| is_earth_rotation(first.bytes)) {
@@ -54,7 +54,8 @@ impl EarthRotation {
         Ok(Self { samples })
     }
 
-    /// Where the axis is at an instant, x towards Greenwich and y towards 90° west, rad; none more than two days outside the file.
+    /// The pole at an instant, x towards Greenwich and y towards 90° west, rad; `None` more than two days outside the
+    /// file.
     pub fn pole(&self, time: GpsTime) -> Option<[f64; 2]> {
         let behind = self.samples.partition_point(|(at, _)| at.since(time) <= 0.0);
         let before = behind.checked_sub(1).and_then(|last| self.samples.get(last));
@@ -74,12 +75,12 @@ impl EarthRotation {
     }
 }
 
-/// Whether a first line is that of a file of the Earth's rotation.
+/// Whether a first line is that of an Earth rotation file.
 pub(crate) fn is_earth_rotation(first: &[u8]) -> bool {
     first.trim_ascii().eq_ignore_ascii_case(b"VERSION 2")
 }
 
-/// The modified Julian date, and where the axis is, ″.
+/// Reads an instant, written as a modified Julian date, and the pole, ″.
 fn sample(line: &Line<'_>) -> Result<(GpsTime, [f64; 2]), Error> {
     let complaint = || line.expected("a date (MJD) and where the axis is (10⁻⁶″)");
     let mut fields = blank_separated(line.bytes).map(decimal);

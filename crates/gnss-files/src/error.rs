@@ -17,20 +17,20 @@ pub enum Error {
         /// The error of the operating system.
         source: io::Error,
     },
-    /// The file as a whole is not what it should be: of another format, damaged, cut off in its header, or without
-    /// anything of GPS.
+    /// The file as a whole is not as expected: of another format, damaged, cut off in its header, or without data of a
+    /// system that is read.
     File {
         /// The file, as named by the caller.
         path: PathBuf,
         /// What was expected, and what was found.
         problem: String,
     },
-    /// A line is not what it should be.
+    /// A line is not as expected.
     Line {
         /// The file, as named by the caller.
         path: PathBuf,
-        /// The line of the unpacked text, from 1. Of Compact RINEX the line of the compressed text if that is
-        /// damaged, of the restored observations otherwise.
+        /// The line of the unpacked text, from 1. For Compact RINEX it is the line of the compressed text if that is
+        /// damaged, and of the restored observations otherwise.
         line: usize,
         /// What was expected, and what was found.
         problem: String,
@@ -68,9 +68,9 @@ impl error::Error for Error {
 pub struct Warning {
     /// The file, as named by the caller.
     pub path: PathBuf,
-    /// The line of the unpacked text, from 1; none if the warning is about the file as a whole.
+    /// The line of the unpacked text, from 1; `None` if the warning is about the file as a whole.
     pub line: Option<usize>,
-    /// What was found, and what became of it.
+    /// What was found, and how it was handled.
     pub problem: String,
 }
 
@@ -85,12 +85,12 @@ impl fmt::Display for Warning {
     }
 }
 
-/// A path on one line, whatever its name holds.
+/// A path on one line, with control characters replaced.
 fn one_line(path: &Path) -> String {
     path.display().to_string().replace(char::is_control, "?")
 }
 
-/// A piece of a file in quotation marks, on one line and short.
+/// A short excerpt of a file in quotation marks, on one line.
 pub(crate) fn quoted(bytes: &[u8]) -> String {
     const LONGEST: usize = 24;
     let text = String::from_utf8_lossy(bytes.trim_ascii());

@@ -1,22 +1,22 @@
-//! Numbers in bytes.
+//! Parsing of numbers from bytes.
 
-/// Below this every integer is a double.
+/// Every integer below this is exactly a double.
 const EXACT: u64 = 1 << 53;
-/// Powers of ten that are doubles.
+/// The powers of ten that are exactly doubles.
 const POWERS: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
-/// The double nearest to a decimal number, whose exponent may be marked E or, as Fortran writes it, D.
-/// None if there is anything else, or if it is beyond all doubles.
+/// The double nearest to a decimal number, whose exponent may be marked E or, as Fortran writes it, D. `None` for
+/// anything else, and beyond the range of doubles.
 pub(crate) fn decimal(field: &[u8]) -> Option<f64> {
     let (negative, digits) = signed(field);
     let magnitude = plain(digits).or_else(|| with_exponent(digits))?;
     Some(if negative { -magnitude } else { magnitude })
 }
 
-/// A number of so few digits that these and the power of ten are doubles: their quotient is rounded once.
+/// Parses a number whose digits and power of ten are exactly doubles, so that their quotient is rounded once.
 #[inline]
 fn plain(digits: &[u8]) -> Option<f64> {
     let (mut mantissa, mut point) = (0_u64, None);
@@ -57,7 +57,7 @@ fn with_exponent(digits: &[u8]) -> Option<f64> {
     let scale = exponent.checked_sub(decimals.map_or(0, |before| count - before))?;
     let power = POWERS.get(scale.unsigned_abs() as usize);
     match power {
-        // Two doubles without error make a result rounded once.
+        // The product or quotient of two exact doubles is rounded once.
         Some(power) if count <= 19 && mantissa < EXACT => {
             let mantissa = mantissa as f64;
             Some(if scale < 0 { mantissa / power } else { mantissa * power })
@@ -74,12 +74,12 @@ fn slowly(digits: &[u8]) -> Option<f64> {
     text.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
-/// An integer; none if there is anything else.
+/// Parses a 32-bit integer; `None` for anything else.
 pub(crate) fn integer(field: &[u8]) -> Option<i32> {
     large_integer(field)?.try_into().ok()
 }
 
-/// An integer; none if there is anything else.
+/// Parses a 64-bit integer; `None` for anything else.
 pub(crate) fn large_integer(field: &[u8]) -> Option<i64> {
     let (negative, digits) = signed(field);
     let mut number = 0_i64;
@@ -98,7 +98,7 @@ fn signed(field: &[u8]) -> (bool, &[u8]) {
     }
 }
 
-/// The first field between blanks, and what follows it.
+/// The first blank-separated field, and the rest of the bytes.
 pub(crate) fn first_field(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let begin = bytes.iter().position(|byte| !byte.is_ascii_whitespace())?;
     let rest = bytes.get(begin..)?;
@@ -106,7 +106,7 @@ pub(crate) fn first_field(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     rest.split_at_checked(end)
 }
 
-/// The fields between blanks.
+/// The blank-separated fields.
 pub(crate) fn blank_separated(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     bytes.split(u8::is_ascii_whitespace).filter(|field| !field.is_empty())
 }

@@ -1,4 +1,4 @@
-//! Files read into memory, and gzip unpacked.
+//! Reading of files into memory, and unpacking of gzip.
 
 use std::fs::{self, File};
 use std::io::{self, BufRead, Read};
@@ -8,7 +8,7 @@ use flate2::bufread::GzDecoder;
 
 use crate::error::Error;
 
-/// Largest size that a file may unpack to, bytes.
+/// The largest size to which a file may unpack, bytes.
 pub(crate) const LARGEST: usize = 1 << 30;
 
 /// Reads a file.
@@ -18,7 +18,7 @@ pub(crate) const LARGEST: usize = 1 << 30;
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
     let open = || match fs::metadata(path)? {
-        // It may have no end, or never begin.
+        // A pipe or device may never end, or never begin.
         file if !(file.is_file() || file.is_dir()) => {
             Err(io::Error::other("it is a pipe or a device, not a file"))
         }
@@ -41,7 +41,7 @@ pub(crate) fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }
 
-/// Unpacks what is packed.
+/// Unpacks a file if it is packed.
 ///
 /// # Errors
 /// [`Error::File`] if it cannot be unpacked.
@@ -58,8 +58,7 @@ pub(crate) fn unpack(path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
     Err(error(format!("expected plain text or gzip, found a file packed with {refused}")))
 }
 
-/// Unpacks the members of a gzip file, one after the other; what follows them and is none is left out, as
-/// gzip does.
+/// Unpacks the members of a gzip file one after the other; trailing data that is no member is ignored, as gzip does.
 fn gunzip(packed: &[u8]) -> Result<Vec<u8>, String> {
     let mut rest = packed;
     let mut unpacked = Vec::with_capacity(packed.len().saturating_mul(5).min(LARGEST));

@@ -1,4 +1,4 @@
-//! Formats told apart by their first line.
+//! Detection of formats by their first line.
 
 use std::fmt;
 use std::fs::File;
@@ -11,22 +11,22 @@ use crate::earth_rotation::is_earth_rotation;
 use crate::error::{Error, quoted};
 use crate::{crinex, gzip, streams};
 
-/// Enough for the first line, packed or not, bytes.
+/// How much of a file is read, bytes: enough for the first line, packed or not.
 const BEGINNING: u64 = 4096;
 
-/// What a file holds, as its first line says.
+/// The kind of a file, according to its first line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Kind {
-    /// What a receiver observed: RINEX or Compact RINEX.
+    /// A receiver's observations: RINEX or Compact RINEX.
     Observations,
-    /// Orbits that the satellites themselves broadcast: RINEX.
+    /// Ephemerides broadcast by satellites: RINEX.
     Navigation,
     /// Weather at a station: RINEX.
     Meteorology,
     /// Clocks of satellites: RINEX.
     Clocks,
-    /// RINEX of another type.
+    /// A RINEX file of another type.
     OtherRinex,
     /// Antenna patterns: ANTEX.
     Antennas,
@@ -40,14 +40,14 @@ pub enum Kind {
     OceanLoading,
     /// The Earth's rotation: ERP.
     EarthRotation,
-    /// A receiver's observations, and mostly ephemerides, as it sent them: UBX.
+    /// A receiver's stream of observations and usually ephemerides: UBX.
     Ubx,
-    /// The same of a reference station: RTCM 3.
+    /// A reference station's stream of observations and usually ephemerides: RTCM 3.
     Rtcm,
 }
 
 impl Kind {
-    /// Of a file, plain or packed with gzip; none if its first line is of no format that this crate knows.
+    /// The kind of a file, plain or packed with gzip; `None` if its first line is of no format that this crate knows.
     ///
     /// # Errors
     /// [`Error::Read`] if the file cannot be read.
@@ -61,12 +61,12 @@ impl Kind {
             return Ok(Self::of(&bytes));
         }
         let mut unpacked = Vec::new();
-        // What was read ends within the file: what could be unpacked of it is its beginning.
+        // The bytes read end within the file: what can be unpacked of them is its beginning.
         let _ = GzDecoder::new(&*bytes).take(BEGINNING).read_to_end(&mut unpacked);
         Ok(Self::of(&unpacked))
     }
 
-    /// Of unpacked contents, or their beginning; none if they are of no format that this crate knows.
+    /// The kind of unpacked contents, or of their beginning; `None` if they are of no format that this crate knows.
     pub fn of(bytes: &[u8]) -> Option<Self> {
         let first = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
         let named = |label: &[u8]| memchr::memmem::find(first, label).is_some();
@@ -115,7 +115,7 @@ impl fmt::Display for Kind {
     }
 }
 
-/// The format of a text in words, by its first line.
+/// The format of a text in words, according to its first line.
 pub(crate) fn in_words(bytes: &[u8]) -> String {
     let first = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
     match Kind::of(bytes) {

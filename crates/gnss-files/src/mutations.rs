@@ -1,4 +1,4 @@
-//! Damaged files of each format: whatever is read of them, nothing panics.
+//! Tests with damaged files of each format: no reader panics.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::{
     samples,
 };
 
-/// Reads bytes as every format; each complaint is one line.
+/// Reads bytes as every format; each error message is one line.
 fn read(bytes: Vec<u8>) {
     let complaints = |text: Result<Text, _>| {
         let text = text?;

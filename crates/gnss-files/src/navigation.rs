@@ -18,28 +18,29 @@ use crate::streams::Stream;
 use crate::text::{Line, Lines, Text};
 use crate::unserved::Unserved;
 
-/// What is said of a record that no satellite can have sent.
+/// The warning about a record that no satellite can have sent.
 const NO_ORBIT: &str = "this record's orbit is no ellipse: it is left out";
 
-/// What satellites broadcast about themselves, which are called by number ([`Observed::prn`](crate::Observed::prn)).
+/// Broadcast ephemerides of satellites, which are identified by number ([`Observed::prn`](crate::Observed::prn)).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Navigation {
-    /// Of each message by itself, as two of a satellite of Galileo hold for the same instant.
+    /// Ephemerides of each message separately, as two messages of a Galileo satellite may hold for the same instant.
     messages: [PerSatellite<Ephemeris>; Message::ALL.len()],
-    /// Klobuchar's ionosphere as GPS broadcasts it: α in s, s per semicircle and so on, then β.
+    /// The coefficients of Klobuchar's ionosphere model as GPS broadcasts them: α in s, s per semicircle and so on,
+    /// then β.
     pub ionosphere: Option<[[f64; 4]; 2]>,
-    /// How many records were passed over: other systems, other messages, orbits that are none.
+    /// The number of records passed over: other systems, other messages, and orbits that are no ellipse.
     pub skipped: usize,
-    /// Of which satellites files have ephemerides whose systems are not served; none of RINEX 2, whose files have one
-    /// system each.
+    /// Warnings that count the satellites with ephemerides of systems that are not read; empty for RINEX 2, whose files
+    /// have one system each.
     pub unserved: Vec<Warning>,
     /// Warnings about the files.
     pub warnings: Vec<Warning>,
 }
 
 impl Navigation {
-    /// Reads files in any order, such as those of three days. Where two hold the same ephemeris, that of the file that begins
-    /// later is taken.
+    /// Reads files in any order, such as those of three days. Where two hold the same ephemeris, the file that begins
+    /// later takes precedence.
     ///
     /// # Errors
     /// [`Error`]: the file, the line, what was expected there and what was found.
@@ -48,10 +49,10 @@ impl Navigation {
         Self::parse(&texts?)
     }
 
-    /// Reads files in memory, as [`Self::read`].
+    /// Reads files in memory, like [`Self::read`].
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// Those of [`Self::read`].
     pub fn parse(texts: &[Text]) -> Result<Self, Error> {
         let mut navigation = Self::default();
         let mut files = Vec::new();
@@ -79,15 +80,15 @@ impl Navigation {
         navigation
     }
 
-    /// What a stream held: ephemerides with the numbers of their satellites, in any order.
+    /// Navigation data from the ephemerides of a stream, each with the number of its satellite, in any order.
     pub fn of(ephemerides: impl IntoIterator<Item = (u8, Ephemeris)>) -> Self {
         let mut navigation = Self::default();
         navigation.put(&[ephemerides.into_iter().collect()]);
         navigation
     }
 
-    /// A satellite's ephemerides in a message in the order of the times they are made for; none of one that the files do not
-    /// know.
+    /// The ephemerides of a satellite in one message, ordered by reference time; empty for a satellite that the files
+    /// do not know.
     pub fn satellite(&self, number: u8, message: Message) -> &[Ephemeris] {
         self.messages[message as usize].of(number)
     }
@@ -207,7 +208,8 @@ impl Navigation {
     }
 }
 
-/// Four numbers from a column of a header on; none if they cannot be read, which costs the ionosphere of one carrier alone.
+/// Four numbers from a column of a header line on; `None` if they cannot be read, which costs only the single-frequency
+/// ionosphere model.
 fn four(line: &Line<'_>, from: usize) -> Option<[f64; 4]> {
     let mut numbers = blank_separated(line.columns(from, 60)).map(decimal);
     let mut next = || numbers.next().flatten();

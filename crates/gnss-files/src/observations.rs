@@ -30,11 +30,11 @@ impl Observations {
         Self::parse(&Text::read(path)?)
     }
 
-    /// Reads a file and takes the biases of satellites off its codes. Satellites of which they are not known stand in
-    /// the warnings.
+    /// Reads a file and subtracts the biases of satellites from its codes. Satellites whose biases are unknown are
+    /// listed in the warnings.
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// Those of [`Self::read`].
     pub fn read_unbiased(path: impl AsRef<Path>, biases: &Biases) -> Result<Self, Error> {
         Self::parse_unbiased(&Text::read(path)?, biases)
     }
@@ -42,15 +42,15 @@ impl Observations {
     /// Reads a file in memory.
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// Those of [`Self::read`].
     pub fn parse(text: &Text) -> Result<Self, Error> {
         Self::parse_unbiased(text, &Biases::default())
     }
 
-    /// Reads a file in memory, as [`Self::read_unbiased`].
+    /// Reads a file in memory, like [`Self::read_unbiased`].
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// Those of [`Self::read`].
     pub fn parse_unbiased(text: &Text, biases: &Biases) -> Result<Self, Error> {
         if let Some(stream) = Stream::of(text)? {
             return Self::of_stream(text, stream, biases);

@@ -6,32 +6,31 @@ use crate::error::{Error, Warning};
 use crate::fields::{blank_separated, decimal};
 use crate::text::{Line, Text};
 
-/// Stations no farther apart than this are one place, degrees.
+/// Stations closer than this are at the same place, degrees.
 const SAME_PLACE: f64 = 0.1;
-/// The waves of a line.
+/// The number of tidal waves in a line.
 const WAVES: usize = 11;
 
-/// The displacement of a station by the load of the ocean's tides: eleven waves
-/// (M2 S2 N2 K2 K1 O1 P1 Q1 Mf Mm Ssa).
+/// The displacement of a station by ocean tide loading: eleven waves (M2 S2 N2 K2 K1 O1 P1 Q1 Mf Mm Ssa).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OceanLoading {
     /// Amplitudes, m: radially up, tangentially west, tangentially south.
     pub amplitude: [[f64; WAVES]; 3],
-    /// Phase lags behind Greenwich, degrees, in the same order.
+    /// Phase lags behind Greenwich, degrees: radially up, tangentially west, tangentially south.
     pub lag: [[f64; WAVES]; 3],
 }
 
 /// The ocean loading of a station, looked up in a file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StationLoading {
-    /// The loading; none if the file does not know the station.
+    /// The loading; `None` if the file does not know the station.
     pub loading: Option<OceanLoading>,
     /// Warnings about the file.
     pub warnings: Vec<Warning>,
 }
 
 impl StationLoading {
-    /// Looks a station up by the first four letters of its marker's name, or else by its place (ECEF, m).
+    /// Looks a station up by the first four letters of its marker's name, or else by its position (ECEF, m).
     ///
     /// # Errors
     /// [`Error`]: the file, the line, what was expected there and what was found.
@@ -43,10 +42,10 @@ impl StationLoading {
         Self::parse(&Text::read(path)?, marker, position)
     }
 
-    /// Looks a station up in a file in memory, as [`Self::read`].
+    /// Looks a station up in a file in memory, like [`Self::read`].
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// Those of [`Self::read`].
     pub fn parse(text: &Text, marker: &str, position: Option<[f64; 3]>) -> Result<Self, Error> {
         let stations = stations(text)?;
         let place = position.map(longitude_latitude);
@@ -54,7 +53,7 @@ impl StationLoading {
         let wanted = four_letters(marker.as_bytes());
         let named = |station: &&Station| station.name == wanted && wanted[0] != b' ';
         let mut this = Self::default();
-        // A name at another place is that of another station.
+        // A matching name at another place belongs to another station.
         let by_name = stations.iter().filter(named).find(|station| near(station) != Some(false));
         let by_place = || stations.iter().find(|station| near(station) == Some(true));
         let marker = marker.trim_ascii();
@@ -90,11 +89,11 @@ fn stations(text: &Text) -> Result<Vec<Station>, Error> {
         }
         let name = line.bytes.trim_ascii();
         if matches!(name, b"Errors:" | b"Warnings:") && !stations.is_empty() {
-            // What the service of Onsala says behind the last station.
+            // The loading service of Onsala appends messages after the last station.
             break;
         }
         let number = blank_separated(name).next().is_some_and(|field| decimal(field).is_some());
-        // A name may be a number, alone in its line.
+        // A name may be a number, alone on its line.
         let is_name = name.iter().all(u8::is_ascii_digit);
         if number && !is_name || !name[0].is_ascii_alphanumeric() {
             return Err(if stations.is_empty() {
@@ -154,7 +153,7 @@ fn four_letters(name: &[u8]) -> [u8; 4] {
 }
 
 /// Geodetic longitude and latitude (WGS 84) of an ECEF position, degrees. The latitude is exact on the ellipsoid, and
-/// 0.001° off at most within 20 km of it: less than matters here.
+/// at most 0.001° off within 20 km of it, which is negligible here.
 fn longitude_latitude([x, y, z]: [f64; 3]) -> [f64; 2] {
     /// The square of the ellipsoid's first eccentricity.
     const ECCENTRICITY_SQUARED: f64 = 6.694_379_990_14e-3;
@@ -162,7 +161,7 @@ fn longitude_latitude([x, y, z]: [f64; 3]) -> [f64; 2] {
     [y.atan2(x).to_degrees(), latitude.to_degrees()]
 }
 
-/// The distance between two longitudes and latitudes, degrees, on a sphere without its poles.
+/// The distance between two points given by longitude and latitude, degrees, on a sphere away from its poles.
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     let east = (a[0] - b[0] + 540.0).rem_euclid(360.0) - 180.0;
     (east * a[1].to_radians().cos()).hypot(a[1] - b[1])
@@ -175,7 +174,7 @@ mod tests {
 
     fn place(longitude: f64) -> [f64; 3] {
         let (longitude, latitude) = (f64::to_radians(longitude), f64::to_radians(50.0));
-        // Radius of curvature in the prime vertical, 10 m above the ellipsoid.
+        // The radius of curvature in the prime vertical, plus 10 m of height above the ellipsoid.
         let (sine, cosine) = latitude.sin_cos();
         let normal = 6_378_137.0 / (1.0 - 6.694_379_990_14e-3 * sine * sine).sqrt();
         let equatorial = (normal + 10.0) * cosine;

@@ -1,4 +1,4 @@
-//! Files opened and unpacked.
+//! Opening and unpacking of files.
 
 use std::path::Path;
 
@@ -7,17 +7,17 @@ use crate::text::Text;
 use crate::{crinex, gzip};
 
 impl Text {
-    /// Reads a file and unpacks it, as [`Self::unpack`].
+    /// Reads a file and unpacks it as [`Self::unpack`] does.
     ///
     /// # Errors
-    /// [`Error::Read`] if the file cannot be read; otherwise as [`Self::unpack`].
+    /// [`Error::Read`] if the file cannot be read; otherwise those of [`Self::unpack`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         Self::unpack(path, gzip::read(path)?)
     }
 
-    /// Takes the contents of a file, named `path` in errors and warnings: plain text, gzip, Compact RINEX, or
-    /// Compact RINEX in gzip.
+    /// Unpacks the contents of a file, named `path` in errors and warnings: plain text, gzip, Compact RINEX, or Compact
+    /// RINEX in gzip.
     ///
     /// # Errors
     /// [`Error::File`] if the contents are packed in another way, damaged, or larger than 1 GiB; [`Error::Line`] if

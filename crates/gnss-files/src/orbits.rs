@@ -9,44 +9,45 @@ use crate::system::satellite;
 use crate::text::{Line, Text};
 use crate::time::GpsTime;
 
-/// Value that stands for an unknown clock, µs.
+/// The value that stands for an unknown clock, µs.
 const NO_CLOCK: f64 = 999_999.0;
 
-/// Positions of one solution are the same in all its files, m.
+/// Tolerance within which two positions of a satellite at one instant are of the same solution, m.
 const SAME_PLACE: f64 = 0.01;
 
-/// The position of a satellite and its clock at one instant.
+/// The position and the clock of a satellite at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OrbitSample {
     /// The instant.
     pub time: GpsTime,
-    /// Centre of mass, m, in the file's Earth-fixed frame (ECEF; an ITRF or IGS frame).
+    /// The centre of mass, m, in the file's Earth-fixed frame (ECEF; an ITRF or IGS frame).
     pub position: [f64; 3],
-    /// The satellite's clock minus GPS time, s, without the relativistic effect of the orbit's eccentricity; none if the
-    /// file does not know it.
+    /// The satellite's clock minus GPS time, s, without the relativistic effect of the orbit's eccentricity; `None` if
+    /// the file does not give it.
     pub clock: Option<f64>,
-    /// Whether the clock is predicted, and so none that was measured.
+    /// Whether the clock is predicted rather than measured.
     pub clock_predicted: bool,
-    /// Whether the clock jumped between the sample before and this one.
+    /// Whether the clock jumped between the preceding sample and this one.
     pub clock_event: bool,
-    /// Whether the satellite was manoeuvred between the sample before and this one: an interpolation across it is
-    /// wrong.
+    /// Whether the satellite was manoeuvred between the preceding sample and this one, so that interpolation across it
+    /// is wrong.
     pub manoeuvre: bool,
 }
 
-/// Orbits of satellites, which are called by number ([`Observed::prn`](crate::Observed::prn)).
+/// Orbits of satellites, which are identified by number ([`Observed::prn`](crate::Observed::prn)).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Orbits {
     samples: PerSatellite<OrbitSample>,
-    /// The edition of the satellites' antennas that the files were made with, as the first of them to say so has it (`PCV:`).
+    /// The edition of the satellite antennas with which the files were made, from the first file that tells it
+    /// (`PCV:`).
     pub antenna_model: Option<AntennaModel>,
     /// Warnings about the files.
     pub warnings: Vec<Warning>,
 }
 
 impl Orbits {
-    /// Reads files in any order, such as those of three days. Where two hold the same instant, that of the file that
-    /// begins later is taken.
+    /// Reads files in any order, such as those of three days. Where two hold the same instant, the file that begins
+    /// later takes precedence.
     ///
     /// # Errors
     /// [`Error`]: the file, the line, what was expected there and what was found.
@@ -55,10 +56,10 @@ impl Orbits {
         Self::parse(&texts?)
     }
 
-    /// Reads files in memory, as [`Self::read`].
+    /// Reads files in memory, like [`Self::read`].
     ///
     /// # Errors
-    /// As [`Self::read`].
+    /// Those of [`Self::read`].
     pub fn parse(texts: &[Text]) -> Result<Self, Error> {
         let mut orbits = Self::default();
         let files: Result<Vec<_>, _> =
@@ -81,7 +82,8 @@ impl Orbits {
         Ok(orbits)
     }
 
-    /// The samples of a satellite in the order of time, perhaps with gaps; none of one that the files do not know.
+    /// The samples of a satellite in chronological order, perhaps with gaps; empty for a satellite that the files do
+    /// not know.
     pub fn satellite(&self, prn: u8) -> &[OrbitSample] {
         self.samples.of(prn)
     }
@@ -149,13 +151,13 @@ fn parse_file(text: &Text, orbits: &mut Orbits) -> Result<PerSatellite<OrbitSamp
     Ok(samples)
 }
 
-/// The edition in a comment as `PCV:IGS14_2108 OL/AL:FES2012`.
+/// The edition in a comment such as `PCV:IGS14_2108 OL/AL:FES2012`.
 fn antenna_model(comment: &[u8]) -> Option<AntennaModel> {
     let told = comment.trim_ascii_start().strip_prefix(b"PCV:")?;
     AntennaModel::named(told.split(|&byte| byte == b' ').next()?)
 }
 
-/// Times of Galileo and of QZSS are those of GPS to some nanoseconds.
+/// Accepts the time systems of GPS, Galileo and QZSS, which agree to some nanoseconds.
 fn time_system(line: &Line<'_>) -> Result<(), Error> {
     match line.columns(9, 12) {
         b"" | b"ccc" | b"GPS" | b"GAL" | b"QZS" => Ok(()),
@@ -172,7 +174,7 @@ fn position(line: &Line<'_>, time: GpsTime) -> Result<Option<OrbitSample>, Error
         *coordinate = 1e3 * line.finite("a position in km", 4 + 14 * i, 18 + 14 * i)?;
     }
     let clock = line.optional_number("a clock in µs", 46, 60)?;
-    // Zeros stand for a position that is not known.
+    // Zeros stand for an unknown position.
     let known = position.iter().any(|&coordinate| coordinate != 0.0);
     Ok(known.then(|| OrbitSample {
         time,

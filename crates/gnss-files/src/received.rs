@@ -1,4 +1,4 @@
-//! A receiver's stream that is read once.
+//! A receiver's stream, read in one pass.
 
 use crate::biases::Biases;
 use crate::error::Error;
@@ -7,20 +7,21 @@ use crate::observations::Observations;
 use crate::streams::Stream;
 use crate::text::Text;
 
-/// What a receiver's stream holds, RTCM 3 or UBX.
+/// The contents of a receiver's stream in RTCM 3 or UBX.
 #[derive(Debug)]
 pub struct Received {
-    /// What was observed.
+    /// The observations.
     pub observations: Observations,
-    /// What the satellites broadcast; perhaps nothing.
+    /// The data that the satellites broadcast; may be empty.
     pub navigation: Navigation,
 }
 
 impl Received {
-    /// Reads a stream in memory, and takes the biases of satellites off its codes, as [`Observations::read_unbiased`].
+    /// Reads a stream in memory, and subtracts the biases of satellites from its codes, like
+    /// [`Observations::read_unbiased`].
     ///
     /// # Errors
-    /// [`Error::File`] if it is no stream, or one without observations.
+    /// [`Error::File`] if the text is no stream, or a stream without observations.
     pub fn parse(text: &Text, biases: &Biases) -> Result<Self, Error> {
         let wrong = || text.wrong_kind("the stream of a receiver (UBX or RTCM 3)");
         let mut stream = Stream::of(text)?.ok_or_else(wrong)?;

@@ -10,7 +10,7 @@ use crate::text::Text;
 
 pub(crate) use self::navigation::{navigation_2, navigation_3, navigation_4};
 
-/// Absolute biases of one satellite and differential ones of another, a receiver's and a phase's.
+/// Absolute biases of one satellite, differential ones of another, and a bias of a receiver and of a phase.
 pub(crate) fn biases() -> String {
     lines(&[
         "%=BIA 1.00 WHU 2021:242:32849 WHU 2021:210:00000 2021:210:86400 A 00001072",
@@ -27,7 +27,7 @@ pub(crate) fn biases() -> String {
     ])
 }
 
-/// A line of a header.
+/// A header line.
 pub(crate) fn header(content: &str, label: &str) -> String {
     format!("{content:<60}{label}\n")
 }
@@ -44,7 +44,7 @@ pub(crate) fn lines(lines: &[&str]) -> String {
     lines.iter().flat_map(|line| [*line, "\n"]).collect()
 }
 
-/// Three epochs of RINEX 3: a satellite that comes, a blank phase, a lost lock, another system, an event.
+/// Three epochs of RINEX 3: a satellite that appears, a blank phase, a loss of lock, another system, an event.
 pub(crate) fn observations_3() -> String {
     observations_3_header() + &observations_3_body()
 }
@@ -82,7 +82,7 @@ fn observations_3_body() -> String {
     ])
 }
 
-/// The same epochs as Hatanaka compresses them.
+/// The epochs of [`observations_3`] in Compact RINEX (Hatanaka).
 pub(crate) fn compressed_3() -> String {
     let front = [
         header("3.0                 COMPACT RINEX FORMAT", "CRINEX VERS   / TYPE"),

@@ -6,10 +6,10 @@ use crate::error::Warning;
 use crate::text::Text;
 use crate::time::GpsTime;
 
-/// Times nearer than this are the same instant written twice, s.
+/// Times closer than this are the same instant written twice, s.
 const SAME: f64 = 1e-3;
 
-/// Samples by the number of the satellite.
+/// Samples by satellite number.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PerSatellite<S>(Vec<Vec<S>>);
 
@@ -40,8 +40,8 @@ impl<S> PerSatellite<S> {
         (0..=u8::MAX).zip(&self.0).filter(|(_, samples)| !samples.is_empty()).map(|(prn, _)| prn)
     }
 
-    /// Puts the samples of files together in the order of time. Of two of the same instant that of the file
-    /// that begins later stays, `complete`d by the other.
+    /// Merges the samples of files in chronological order. Of two samples of the same instant, that of the file that
+    /// begins later stays, `complete`d by the other.
     pub(crate) fn merge(
         mut files: Vec<Self>,
         time: impl Fn(&S) -> GpsTime,
@@ -58,7 +58,7 @@ impl<S> PerSatellite<S> {
             }
         }
         for samples in &mut merged.0 {
-            // Stable: of equal times the one read later stays behind.
+            // The sort is stable: of equal times the one read later stays last.
             samples.sort_by(|a, b| seconds(a).total_cmp(&seconds(b)));
             samples.dedup_by(|later, earlier| {
                 let same = seconds(later) - seconds(earlier) < SAME;
@@ -82,7 +82,7 @@ impl Differing {
         self.0.insert((time.day(), (time.second() * 1e3) as i64));
     }
 
-    /// A warning where files differ at more instants than those at which one day ends and the next begins.
+    /// A warning if files differ at more instants than those at which one day ends and the next begins.
     pub(crate) fn warning(&self, texts: &[Text], what: &str) -> Option<Warning> {
         let count = self.0.len();
         let first = texts.first().filter(|_| texts.len() > 1 && count > texts.len())?;

@@ -1,4 +1,4 @@
-//! Systems of satellites, and the numbers by which satellites are called.
+//! Satellite systems, and the numbers that identify satellites.
 
 use crate::fields::integer;
 
@@ -15,20 +15,20 @@ pub enum System {
     BeiDou,
 }
 
-/// Numbers of satellites of GPS: those of their names. Of other systems they begin behind …
+/// The largest number of a GPS satellite's name.
 const GPS: u8 = 99;
-/// … this, of Galileo, …
+/// The number of a Galileo satellite is that of its name plus this.
 const GALILEO: u8 = 100;
-/// … this, of GLONASS, …
+/// The number of a GLONASS satellite is that of its name plus this.
 const GLONASS: u8 = 150;
-/// … and this, of BeiDou, of which there are up to 63.
+/// The number of a BeiDou satellite is that of its name, up to 63, plus this.
 const BEIDOU: u8 = 180;
 
 impl System {
-    /// All of them.
+    /// All systems.
     pub const ALL: [Self; 4] = [Self::Gps, Self::Galileo, Self::Glonass, Self::BeiDou];
 
-    /// That of a satellite's number.
+    /// The system to which a satellite number belongs.
     pub const fn of(satellite: u8) -> Self {
         if satellite <= GALILEO {
             Self::Gps
@@ -41,7 +41,7 @@ impl System {
         }
     }
 
-    /// The number of its satellite of a number; none if that is no satellite's.
+    /// The satellite number of the number in a satellite's name; `None` if no satellite has that name.
     pub(crate) fn number(self, of_name: u8) -> Option<u8> {
         let most = match self {
             Self::Gps => GPS,
@@ -52,7 +52,7 @@ impl System {
         (1..=most).contains(&of_name).then(|| self.behind() + of_name)
     }
 
-    /// The system of a letter.
+    /// The system denoted by a letter.
     pub(crate) const fn of_letter(letter: u8) -> Option<Self> {
         match letter {
             b'G' => Some(Self::Gps),
@@ -63,12 +63,13 @@ impl System {
         }
     }
 
-    /// Whether a satellite stands over the equator (BeiDou): its orbit is known worse by far, and its ephemeris another kind.
+    /// Whether a satellite is geostationary (BeiDou): its orbit is known far less accurately, and its ephemeris is of
+    /// another kind.
     pub const fn is_geostationary(satellite: u8) -> bool {
         matches!(satellite.checked_sub(BEIDOU), Some(1..=5 | 59..=63))
     }
 
-    /// By which satellites' names begin.
+    /// The letter with which the names of the system's satellites begin.
     pub(crate) const fn letter(self) -> u8 {
         match self {
             Self::Gps => b'G',
@@ -88,8 +89,8 @@ impl System {
     }
 }
 
-/// The number of a satellite by its name (`G05`, `E 5`, or, where GPS goes without saying, ` 5`): that of the name, behind 100 of
-/// Galileo, behind 150 of GLONASS, behind 180 of BeiDou.
+/// The number of a satellite from its name (`G05`, `E 5`, or ` 5` where GPS is implied): that of the name for GPS, plus
+/// 100 for Galileo, plus 150 for GLONASS, plus 180 for BeiDou.
 pub(crate) fn satellite(name: &[u8]) -> Option<u8> {
     let (system, digits) = match name.split_first() {
         Some((letter, digits)) if letter.is_ascii_alphabetic() => {
@@ -100,7 +101,7 @@ pub(crate) fn satellite(name: &[u8]) -> Option<u8> {
     system.number(u8::try_from(integer(digits.trim_ascii())?).ok()?)
 }
 
-/// The number of a GPS satellite called `G05`, `G 5` or, where GPS goes without saying, ` 5`.
+/// The number of a GPS satellite named `G05`, `G 5`, or ` 5` where GPS is implied.
 pub(crate) fn gps_satellite(name: &[u8]) -> Option<u8> {
     satellite(name).filter(|number| System::of(*number) == System::Gps)
 }

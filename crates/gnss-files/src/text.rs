@@ -1,4 +1,4 @@
-//! Lines of fixed columns, in bytes: headers hold names in any encoding.
+//! Lines of fixed columns, as bytes, because headers hold names in any encoding.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use crate::time::GpsTime;
 
 /// A file's unpacked text in memory, with the file's name.
 ///
-/// The readers take it where a file is at hand as bytes, or serves several of them.
+/// The readers accept it where a file is available as bytes, or serves several readers.
 #[derive(Debug, Clone)]
 pub struct Text {
     path: PathBuf,
@@ -25,12 +25,12 @@ impl Text {
         &self.bytes
     }
 
-    /// The lines of the text, blank ones too.
+    /// The lines of the text, including blank ones.
     pub(crate) fn lines(&self) -> Lines<'_> {
         Lines { text: self, position: 0 }
     }
 
-    /// An error of the file as a whole.
+    /// An error about the file as a whole.
     pub(crate) fn error(&self, problem: impl Into<String>) -> Error {
         Error::File { path: self.path.clone(), problem: problem.into() }
     }
@@ -40,18 +40,18 @@ impl Text {
         Warning { path: self.path.clone(), line: None, problem: problem.into() }
     }
 
-    /// Whether the last line is complete; that of a file cut off is not.
+    /// Whether the last line is complete, unlike that of a file that was cut off.
     pub(crate) fn ends_with_line_break(&self) -> bool {
         self.bytes.last() == Some(&b'\n')
     }
 
-    /// The error that this is of another format than `expected`.
+    /// The error that the file is of another format than `expected`.
     pub(crate) fn wrong_kind(&self, expected: &str) -> Error {
         self.error(format!("expected {expected}, found {}", in_words(&self.bytes)))
     }
 }
 
-/// The lines of a [`Text`] from some place on.
+/// The remaining lines of a [`Text`].
 #[derive(Debug, Clone)]
 pub(crate) struct Lines<'a> {
     text: &'a Text,
@@ -59,19 +59,19 @@ pub(crate) struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// Whether there is no line left.
+    /// Whether all lines have been read.
     pub(crate) fn is_at_end(&self) -> bool {
         self.position >= self.text.bytes.len()
     }
 
-    /// Goes on behind the next line that holds `words`, or to the end.
+    /// Skips past the next line that contains `words`, or to the end.
     pub(crate) fn skip_past(&mut self, words: &memchr::memmem::Finder<'_>) {
         let rest = &self.text.bytes[self.position..];
         self.position += words.find(rest).unwrap_or(rest.len());
         self.next();
     }
 
-    /// The next line of a record that goes on.
+    /// The next line, where the record requires one.
     ///
     /// # Errors
     /// [`Error::File`] at the end of the file.
@@ -110,7 +110,7 @@ impl<'a> Line<'a> {
         memchr::memchr_iter(b'\n', &self.text.bytes[..self.start]).count() + 1
     }
 
-    /// An error of this line.
+    /// An error about this line.
     pub(crate) fn error(&self, problem: impl Into<String>) -> Error {
         let path = self.text.path.clone();
         Error::Line { path, line: self.number(), problem: problem.into() }
@@ -127,30 +127,30 @@ impl<'a> Line<'a> {
         Warning { path: self.text.path.clone(), line, problem: problem.into() }
     }
 
-    /// The bytes from one column to before another, counted from 0, without surrounding blanks; nothing
-    /// beyond the line's end.
+    /// The bytes from column `from` up to, not including, column `to`, counted from 0, without surrounding blanks;
+    /// empty beyond the end of the line.
     pub(crate) fn columns(&self, from: usize, to: usize) -> &'a [u8] {
         let to = to.min(self.bytes.len());
         self.bytes.get(from..to).unwrap_or_default().trim_ascii()
     }
 
-    /// The byte in a column, blank beyond the line's end.
+    /// The byte in a column; a blank beyond the end of the line.
     pub(crate) fn column(&self, place: usize) -> u8 {
         self.bytes.get(place).copied().unwrap_or(b' ')
     }
 
-    /// The text between two columns, without blanks behind it.
+    /// The text between two columns, without trailing blanks.
     pub(crate) fn text(&self, from: usize, to: usize) -> String {
         let field = self.bytes.get(from..to.min(self.bytes.len())).unwrap_or_default();
         String::from_utf8_lossy(field.trim_ascii_end()).into_owned()
     }
 
-    /// The label of a line of a header, in columns 60 to 80.
+    /// The label of a header line, in columns 60 to 80.
     pub(crate) fn label(&self) -> &'a [u8] {
         self.columns(60, 80)
     }
 
-    /// The finite number between two columns, none if they are blank.
+    /// The finite number between two columns; `None` if they are blank.
     ///
     /// # Errors
     /// [`Error::Line`] if it is anything else, or if the line ends within it.
@@ -167,8 +167,8 @@ impl<'a> Line<'a> {
         self.finite_of(field, what, to).map(Some)
     }
 
-    /// The finite number between two columns, which ends in the last one, as Fortran writes it: of one that a file cut
-    /// off holds the beginning, nobody knows what is missing.
+    /// The finite number between two columns, right-aligned as Fortran writes it: if a file is cut off within a number,
+    /// the missing digits are unknown.
     ///
     /// # Errors
     /// [`Error::Line`] if there is anything else, or if the line ends within the number.
@@ -204,10 +204,10 @@ impl<'a> Line<'a> {
         self.short_time(columns, |year| year)
     }
 
-    /// The instant as in [`Self::time`], where `full` makes a whole year of the one in the file.
+    /// The instant as [`Self::time`] reads it, where `full` converts the year in the file to a full year.
     ///
     /// # Errors
-    /// As [`Self::time`].
+    /// Those of [`Self::time`].
     pub(crate) fn short_time(
         &self,
         columns: [usize; 7],

@@ -1,9 +1,9 @@
 //! GPS time, the calendar and leap seconds.
 
-/// Seconds of a day.
+/// The length of a day, s.
 const DAY: f64 = 86_400.0;
 
-/// The days (modified Julian date) that began with UTC another second behind GPS time, from 1981 on.
+/// The days (modified Julian date) at whose beginning UTC fell another second behind GPS time, from 1981 on.
 const LEAPS: [i32; 18] = [
     44_786, 45_151, 45_516, 46_247, 47_161, 47_892, 48_257, 48_804, 49_169, 49_534, 50_083, 50_630,
     51_179, 53_736, 54_832, 56_109, 57_204, 57_754,
@@ -11,7 +11,7 @@ const LEAPS: [i32; 18] = [
 
 /// An instant in GPS time: a day, and the second of that day.
 ///
-/// One number of seconds could not hold both a century and a nanosecond.
+/// A single number of seconds could not resolve a nanosecond over a century.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct GpsTime {
     day: i32,
@@ -19,34 +19,37 @@ pub struct GpsTime {
 }
 
 impl GpsTime {
-    /// By so much BeiDou's time is behind that of GPS, s.
+    /// The offset of GPS time from BeiDou time, s: BeiDou time is behind.
     pub(crate) const BEIDOU_BEHIND: f64 = 14.0;
 
     /// The instant at which GPS time began.
     #[cfg(any(feature = "rtcm", feature = "ubx"))]
     pub(crate) const EPOCH: Self = Self { day: 44_244, second: 0.0 };
 
-    /// The instant `second` seconds after the midnight that begins day `day` (modified Julian date), brought into
-    /// its own day. A second that is not finite or is beyond ten thousand years stays as it is.
+    /// The instant `second` seconds after the midnight that begins day `day` (modified Julian date), normalised to its
+    /// own day.
+    ///
+    /// A second that is not finite or is beyond ten thousand years is kept as it is.
     pub fn new(day: i32, second: f64) -> Self {
         let days = (second / DAY).floor();
         if days == 0.0 || !(-4e6..4e6).contains(&days) {
             return Self { day, second };
         }
-        // A tiny negative second rounds up to a whole day.
+        // A tiny negative second rounds to a whole day.
         let second = second - days * DAY;
         let (days, second) = if second < DAY { (days, second) } else { (days + 1.0, 0.0) };
         Self { day: day.saturating_add(days as i32), second }
     }
 
-    /// The same instant by GPS, of one that is told by BeiDou.
+    /// Converts an instant in BeiDou time to GPS time.
     pub(crate) fn beidou_to_gps(self) -> Self {
         Self::new(self.day, self.second + Self::BEIDOU_BEHIND)
     }
 
-    /// The instant of a year, month, day, hour and minute of the Gregorian calendar and a second, all in GPS time;
-    /// none if there is no such day or time, or outside the years 1900 to 2200. The hour may be 24 and the second
-    /// 60, as some programs round.
+    /// The instant of a year, month, day, hour and minute of the Gregorian calendar and a second, all in GPS time.
+    ///
+    /// `None` if there is no such day or time, or outside the years 1900 to 2200. The hour may be 24 and the second 60,
+    /// as some programs round.
     pub fn from_calendar([year, month, day, hour, minute]: [i32; 5], second: f64) -> Option<Self> {
         let leap_year = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
         let days = match month {
@@ -64,7 +67,7 @@ impl GpsTime {
         if !fits {
             return None;
         }
-        // March begins the year, so that the leap day ends it.
+        // The year is counted from March, so that the leap day ends it.
         let (year, month) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
         let days = 365 * year + year / 4 - year / 100 + year / 400 + (153 * month + 2) / 5 + day;
         let seconds = f64::from(3600 * hour + 60 * minute) + second;
@@ -96,7 +99,7 @@ impl GpsTime {
     }
 }
 
-/// The year of which only the last two digits are given: from 1980 to 2079.
+/// The full year of a two-digit year: from 1980 to 2079.
 pub(crate) fn full_year(year: i32) -> i32 {
     match year {
         80..=99 => 1900 + year,

@@ -1,7 +1,7 @@
-//! Satellites of systems that are not served.
+//! Satellites of systems that are not read.
 
-/// Systems by the letter of their satellites, in the order in which they are named. Galileo, GLONASS and BeiDou stand here for RINEX 2,
-/// of which they are not read, and for what is not read of them elsewhere.
+/// The systems by the letter of their satellites, in the order in which they are named. Galileo, GLONASS and BeiDou are
+/// listed because RINEX 2 files of them are not read, and some data of them elsewhere is not either.
 const SYSTEMS: [(u8, &str); 6] = [
     (b'E', "Galileo"),
     (b'R', "GLONASS"),
@@ -11,12 +11,13 @@ const SYSTEMS: [(u8, &str); 6] = [
     (b'S', "SBAS"),
 ];
 
-/// Satellites of systems that are not served: a bit for each number of a system. Observations note one for each line.
+/// The set of satellites that are not read: a bit for each number of a system, as observations note a satellite for
+/// every line.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Unserved([u128; SYSTEMS.len()]);
 
 impl Unserved {
-    /// Takes note of a satellite by its name, unless its system is not known.
+    /// Notes a satellite by its name, unless its system is unknown.
     pub(crate) fn note_name(&mut self, [letter, tens, ones]: [u8; 3]) {
         let digit = |byte: u8| byte.is_ascii_digit().then(|| byte - b'0');
         // RINEX allows both R01 and R 1.
@@ -25,7 +26,7 @@ impl Unserved {
         self.note(letter, 10 * tens + ones);
     }
 
-    /// Takes note of a satellite by the letter of its system and its number, unless one of them is not known.
+    /// Notes a satellite by the letter of its system and its number, unless either is unknown.
     pub(crate) fn note(&mut self, letter: u8, number: u8) {
         let Some(bit) = 1_u128.checked_shl(u32::from(number)) else { return };
         for ((of, _), seen) in SYSTEMS.iter().zip(&mut self.0) {
@@ -35,7 +36,8 @@ impl Unserved {
         }
     }
 
-    /// A sentence about them or their ephemerides, if there are any.
+    /// A sentence that counts the satellites by system, if there are any; `what` is the satellites themselves or their
+    /// ephemerides.
     pub(crate) fn sentence(&self, what: &str) -> Option<String> {
         let told = SYSTEMS.iter().zip(self.0).filter(|(_, seen)| *seen != 0);
         let told = told.map(|((_, system), seen)| format!("{system} ({})", seen.count_ones()));

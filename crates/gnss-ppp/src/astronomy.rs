@@ -1,4 +1,4 @@
-//! Angles of the Sun, the Moon and the Earth, which the positions of the bodies and the tides share.
+//! Angles of the Sun, the Moon and the Earth, shared by the positions of the bodies and the tides.
 
 use core::f64::consts::{PI, TAU};
 
@@ -7,9 +7,8 @@ use crate::constants::TERRESTRIAL_MINUS_GPS;
 
 /// Greenwich mean sidereal time, rad from 0 to 2π (IAU 2006; Capitaine et al. 2005).
 ///
-/// `ut1_minus_gps` (s) is UT1 − UTC minus the seconds by which GPS time is ahead of UTC: −18 and a fraction
-/// since 2017. If UT1 − UTC is not known, it may be left out: 0.9 s turn the Earth by 66 µrad, and the tides by
-/// some 50 µm.
+/// `ut1_minus_gps` (s) is UT1 − UTC minus the seconds by which GPS time is ahead of UTC: −18 and a fraction since 2017.
+/// If UT1 − UTC is unknown, it may be omitted: 0.9 s turn the Earth by 66 µrad, and change the tides by some 50 µm.
 pub fn greenwich_sidereal_time(time: GpsTime, ut1_minus_gps: f64) -> f64 {
     let days = time.days_since_j2000(ut1_minus_gps);
     let centuries = time.days_since_j2000(TERRESTRIAL_MINUS_GPS) / 36_525.0;
@@ -40,7 +39,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// Delaunay's arguments (IERS Conventions 2010, 5.43, to the square of the time).
+    /// Computes Delaunay's arguments (IERS Conventions 2010, 5.43, up to the square of time).
     pub(crate) fn at(time: GpsTime, ut1_minus_gps: f64) -> Self {
         let t = time.days_since_j2000(TERRESTRIAL_MINUS_GPS) / 36_525.0;
         let angle = |degrees: f64, linear: f64, square: f64| {
@@ -88,7 +87,7 @@ impl Arguments {
     }
 }
 
-/// Radians of an angle in arcseconds.
+/// Converts an angle in arcseconds to radians.
 fn arcseconds(angle: f64) -> f64 {
     (angle / 3_600.0).to_radians()
 }

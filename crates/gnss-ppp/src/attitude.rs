@@ -1,28 +1,28 @@
 use nalgebra::Vector3;
 
-/// The axes of a satellite's body as unit vectors in ECEF, named as the IGS names them (and ANTEX
-/// files refer to them) whatever the manufacturer does.
+/// The body axes of a satellite as unit vectors in ECEF, named by the convention of the IGS, to which ANTEX files
+/// refer, whatever the manufacturer's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BodyAxes {
-    /// Completes the right-handed triad: towards the side on which the Sun is.
+    /// The axis that completes the right-handed triad, on the side of the Sun.
     pub x: Vector3<f64>,
-    /// Along the axis of the solar panels, across the plane of Earth, satellite and Sun.
+    /// The axis of the solar panels, perpendicular to the plane of Earth, satellite and Sun.
     pub y: Vector3<f64>,
-    /// Towards the Earth's centre, along the antenna's beam.
+    /// The axis towards the Earth's centre, along the antenna's beam.
     pub z: Vector3<f64>,
 }
 
 impl BodyAxes {
-    /// The nominal attitude of a satellite that steers its yaw by the Sun: antenna to the Earth, panels
-    /// across the Sun. `satellite` and `sun` are ECEF positions (m) of the same instant.
+    /// The nominal attitude of a yaw-steering satellite: antenna to the Earth, panels perpendicular to the Sun.
+    /// `satellite` and `sun` are ECEF positions (m) at the same instant.
     ///
-    /// `None` where that says nothing about the yaw: if Earth, satellite and Sun stand in one line, or a
-    /// number is not finite. In the Earth's shadow and at noon real satellites turn slower than the nominal
-    /// attitude, which is not modelled here (Montenbruck et al. 2015, *Adv. Space Res.* 56, section 3).
+    /// `None` where the yaw is undefined: if Earth, satellite and Sun are collinear, or a number is not finite. In the
+    /// Earth's shadow and at noon real satellites turn more slowly than the nominal attitude, which is not modelled
+    /// here (Montenbruck et al. 2015, *Adv. Space Res.* 56, section 3).
     pub fn nominal(satellite: &Vector3<f64>, sun: &Vector3<f64>) -> Option<Self> {
-        // A sine below which rounding decides on the yaw.
+        // The sine below which rounding determines the yaw.
         const COLLINEAR: f64 = 1e-9;
         let z = (-satellite).try_normalize(f64::MIN_POSITIVE)?;
         let to_sun = (sun - satellite).try_normalize(f64::MIN_POSITIVE)?;
@@ -31,13 +31,13 @@ impl BodyAxes {
         x.iter().all(|x| x.is_finite()).then_some(Self { x, y, z })
     }
 
-    /// A vector given along the body's axes, in ECEF.
+    /// Converts a vector from body axes to ECEF.
     pub fn to_ecef(&self, body: &[f64; 3]) -> Vector3<f64> {
         let [x, y, z] = *body;
         self.x * x + self.y * y + self.z * z
     }
 
-    /// An ECEF vector along the body's axes.
+    /// Converts an ECEF vector to body axes.
     pub fn from_ecef(&self, vector: &Vector3<f64>) -> [f64; 3] {
         [self.x.dot(vector), self.y.dot(vector), self.z.dot(vector)]
     }

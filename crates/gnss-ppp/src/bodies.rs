@@ -16,8 +16,8 @@ pub struct Bodies {
     pub moon: Vector3<f64>,
 }
 
-/// Multiples of D, l′, l and F, and what they add to the Moon's longitude (10⁻⁶ degrees, with the sine) and
-/// distance (m, with the cosine): the largest terms of Meeus 1998, table 47.A.
+/// Multiples of D, l′, l and F, and the terms of the Moon's longitude (10⁻⁶ degrees, with the sine) and distance (m,
+/// with the cosine): the largest terms of Meeus 1998, table 47.A.
 const LONGITUDE_AND_DISTANCE: [([i8; 4], f64, f64); 24] = [
     ([0, 0, 1, 0], 6_288_774.0, -20_905_355.0),
     ([2, 0, -1, 0], 1_274_027.0, -3_699_111.0),
@@ -44,7 +44,7 @@ const LONGITUDE_AND_DISTANCE: [([i8; 4], f64, f64); 24] = [
     ([1, 1, 0, 0], 4_987.0, -16_675.0),
     ([2, -1, 1, 0], 4_036.0, -12_831.0),
 ];
-/// The Moon's latitude, 10⁻⁶ degrees with the sine (table 47.B).
+/// Multiples of D, l′, l and F, and the terms of the Moon's latitude (10⁻⁶ degrees, with the sine; table 47.B).
 const LATITUDE: [([i8; 4], f64); 12] = [
     ([0, 0, 0, 1], 5_128_122.0),
     ([0, 0, 1, 1], 280_602.0),
@@ -61,12 +61,14 @@ const LATITUDE: [([i8; 4], f64); 12] = [
 ];
 
 impl Bodies {
-    /// The bodies at an instant. Against ERFA's ephemerides the Sun is within 0.01°, the Moon within 0.04° and
-    /// 80 km from 1990 to 2044: together at most 0.23 mm of tide. `ut1_minus_gps` (s) as for
+    /// The bodies at an instant; `ut1_minus_gps` (s) as for
     /// [`greenwich_sidereal_time`](crate::greenwich_sidereal_time).
     ///
-    /// Geometric positions on the mean equator of date, turned by mean sidereal time: nutation (0.003°),
-    /// polar motion and light time are neglected.
+    /// Compared with ERFA's ephemerides, the Sun is within 0.01°, the Moon within 0.04° and 80 km from 1990 to 2044:
+    /// together at most 0.23 mm of tide.
+    ///
+    /// The positions are geometric on the mean equator of date, turned by mean sidereal time: nutation (0.003°), polar
+    /// motion and light time are neglected.
     pub fn at(time: GpsTime, ut1_minus_gps: f64) -> Self {
         let arguments = Arguments::at(time, ut1_minus_gps);
         let obliquity = (23.439_279_4 - 0.013_010_2 * arguments.centuries).to_radians();
@@ -87,7 +89,7 @@ impl Bodies {
     }
 }
 
-/// Longitude (rad) and distance (m) of the Sun: an ellipse (Meeus 1998, chapter 25).
+/// The longitude (rad) and distance (m) of the Sun: an ellipse (Meeus 1998, chapter 25).
 fn sun(arguments: &Arguments) -> (f64, f64) {
     let Arguments { centuries: t, sun_anomaly, .. } = *arguments;
     let centre = (1.914_602 - 0.004_817 * t) * sin(sun_anomaly)
@@ -100,7 +102,7 @@ fn sun(arguments: &Arguments) -> (f64, f64) {
     (arguments.sun_longitude() + centre, distance * ASTRONOMICAL_UNIT)
 }
 
-/// Longitude and latitude (rad) and distance (m) of the Moon.
+/// The longitude and latitude (rad) and distance (m) of the Moon.
 fn moon(arguments: &Arguments) -> (f64, f64, f64) {
     let angles = [
         arguments.elongation,

@@ -1,4 +1,4 @@
-//! Precise satellite clocks: between their samples.
+//! Precise satellite clocks: interpolation between samples.
 
 use crate::GpsTime;
 
@@ -9,8 +9,8 @@ use crate::GpsTime;
 pub struct ClockSample {
     /// Seconds since the clock's reference instant.
     pub second: f64,
-    /// Satellite clock minus GPS time, s, without the relativistic effect of
-    /// its eccentric orbit, as products of the IGS give it.
+    /// Satellite clock minus GPS time, s, without the relativistic effect of the orbit's eccentricity, as in products
+    /// of the IGS.
     pub bias: f64,
 }
 
@@ -21,26 +21,25 @@ pub struct ClockSample {
 pub struct ClockState {
     /// Satellite clock minus GPS time, s.
     pub bias: f64,
-    /// Time from the sample before to the sample after, s; zero on a sample.
+    /// The time between the neighbouring samples, s; zero on a sample.
     pub interval: f64,
-    /// Time to the nearer of both, s.
+    /// The time to the nearer neighbouring sample, s.
     pub distance: f64,
 }
 
-/// A satellite's precise clock: samples in the order of time.
+/// A satellite's precise clock: samples in chronological order.
 #[derive(Clone, Copy, Debug)]
 pub struct Clock<'a> {
-    /// The instant from which the samples count.
+    /// The reference instant of the samples' times.
     pub reference: GpsTime,
-    /// Samples, ascending.
+    /// The samples, in ascending order of time.
     pub samples: &'a [ClockSample],
     /// The longest gap between samples that is bridged, s.
     pub longest_gap: f64,
 }
 
 impl Clock<'_> {
-    /// The clock at `time`, on the straight line between its neighbours; none outside of the
-    /// samples or in a gap.
+    /// The clock at `time`, interpolated linearly between its neighbours; `None` outside the samples or in a gap.
     pub fn at(&self, time: GpsTime) -> Option<ClockState> {
         let second = time.since(self.reference);
         let after = self.samples.partition_point(|sample| sample.second <= second);

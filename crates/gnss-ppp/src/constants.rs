@@ -14,5 +14,5 @@ pub const SUN_TO_EARTH_MASS: f64 = 332_946.048_2;
 pub const MOON_TO_EARTH_MASS: f64 = 0.012_300_037_1;
 /// Astronomical unit, m (IAU 2012).
 pub const ASTRONOMICAL_UNIT: f64 = 149_597_870_700.0;
-/// Terrestrial time ahead of GPS time, s.
+/// Terrestrial time minus GPS time, s.
 pub const TERRESTRIAL_MINUS_GPS: f64 = 51.184;

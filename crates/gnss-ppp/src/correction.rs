@@ -1,32 +1,32 @@
-/// One part of the observation model beyond geometry and clocks.
+/// A correction of the observation model beyond geometry and clocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Correction {
-    /// The satellite's clock on its eccentric orbit: up to 14 m.
+    /// The relativistic effect of the orbit's eccentricity on the satellite's clock: up to 14 m.
     Relativity,
     /// The signal's delay in the Earth's gravity: 2 cm, nearly the same for all satellites.
     Shapiro,
-    /// The Earth's rotation while the signal travels: up to 40 m.
+    /// The Earth's rotation during the signal's flight: up to 40 m.
     Sagnac,
     /// The hydrostatic troposphere: 2.3 m at the zenith.
     Troposphere,
     /// The tide of the solid Earth: up to 40 cm.
     SolidTide,
-    /// The load of the oceans' tides: up to 10 cm near the coast.
+    /// Loading by the ocean tides: up to 10 cm near the coast.
     OceanLoading,
-    /// The turning of the antennas against each other: up to a cycle.
+    /// The phase wind-up by relative rotation of the antennas: up to a cycle.
     WindUp,
-    /// Phase centre of the satellite's antenna: 1 to 3 m.
+    /// The phase centre of the satellite's antenna: 1 to 3 m.
     SatelliteAntenna,
-    /// Phase centre of the receiver's antenna: 5 to 15 cm.
+    /// The phase centre of the receiver's antenna: 5 to 15 cm.
     ReceiverAntenna,
-    /// The tide of the pole: up to 25 mm.
+    /// The pole tide: up to 25 mm.
     PoleTide,
 }
 
 impl Correction {
-    /// All of them.
+    /// All corrections.
     pub const ALL: [Self; 10] = [
         Self::Relativity,
         Self::Shapiro,
@@ -41,7 +41,7 @@ impl Correction {
     ];
 }
 
-/// Set of the corrections that are applied: all, unless one is left out to see what it is worth.
+/// The set of corrections that are applied: all, unless one is left out to measure its effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -8,7 +8,7 @@ const FLATTENING: f64 = 1.0 / 298.257_222_101;
 /// First eccentricity of the ellipsoid, squared.
 const ECCENTRICITY_SQUARED: f64 = FLATTENING * (2.0 - FLATTENING);
 
-/// A place on or above the GRS 80 ellipsoid.
+/// A geodetic position relative to the GRS 80 ellipsoid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -22,10 +22,10 @@ pub struct Geodetic {
 }
 
 impl Geodetic {
-    /// The place of an ECEF position (m).
+    /// Converts an ECEF position (m).
     ///
-    /// Fixed-point iteration on the latitude, below a micrometre between 10 km below ground and the
-    /// orbits of satellites. At the Earth's centre the latitude is meaningless, but finite.
+    /// The latitude is found by fixed-point iteration, to below a micrometre from 10 km below ground to the orbits of
+    /// satellites. At the Earth's centre the latitude is meaningless, but finite.
     pub fn from_ecef(position: &Vector3<f64>) -> Self {
         let [x, y, z] = *position.as_array();
         let equatorial = libm::hypot(x, y);
@@ -74,14 +74,14 @@ impl Geodetic {
     }
 }
 
-/// Direction from a receiver to a satellite.
+/// The direction from a receiver to a satellite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Direction {
-    /// Above the horizon, rad.
+    /// The angle above the horizon, rad.
     pub elevation: f64,
-    /// From north over east, rad, from 0 to 2π.
+    /// The angle from north over east, rad, from 0 to 2π.
     pub azimuth: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The ionosphere as GPS broadcasts it.
+//! The ionosphere model that GPS broadcasts.
 
 use core::f64::consts::{PI, TAU};
 
@@ -6,29 +6,30 @@ use crate::constants::SPEED_OF_LIGHT;
 use crate::trigonometry::cos;
 use crate::{Direction, Geodetic, GpsTime};
 
-/// Delay at night, s.
+/// The delay at night, s.
 const NIGHT: f64 = 5e-9;
-/// When the delay is largest, s of local time.
+/// The time of the largest delay, s of local time.
 const AFTERNOON: f64 = 50_400.0;
-/// The shortest period, s.
+/// The lower limit of the period, s.
 const SHORTEST: f64 = 72_000.0;
 
-/// Klobuchar's model with the coefficients that GPS broadcasts: half of the delay is left, in the root mean square
+/// Klobuchar's model with the coefficients that GPS broadcasts: half of the delay remains as root mean square error
 /// (IS-GPS-200, 20.3.3.5.2.5).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Klobuchar {
-    /// Of the amplitude: s, s per semicircle of geomagnetic latitude, and so on.
+    /// The coefficients of the amplitude: s, s per semicircle of geomagnetic latitude, and so on.
     pub alpha: [f64; 4],
-    /// Of the period: the same.
+    /// The coefficients of the period: s, s per semicircle of geomagnetic latitude, and so on.
     pub beta: [f64; 4],
 }
 
 impl Klobuchar {
-    /// Delay of a code on L1 (or E1, the same frequency), m. On another frequency f it is (f₁/f)² times as long.
+    /// The delay of a code on L1 (or E1, which has the same frequency), m. On another frequency f it is (f₁/f)² times
+    /// as long.
     pub fn delay(&self, place: &Geodetic, direction: &Direction, time: GpsTime) -> f64 {
-        // Angles in semicircles, as everything in the model.
+        // Angles are in semicircles, as everywhere in the model.
         let elevation = direction.elevation / PI;
         let away = 0.0137 / (elevation + 0.11) - 0.022;
         let (sine, cosine) = libm::sincos(direction.azimuth);
@@ -74,8 +75,8 @@ mod tests {
         model.delay(&place, &direction, GpsTime::new(59_025, second))
     }
 
-    /// The example that is passed on with implementations of the model (40° N, 100° W, 20:45 UTC: 23.784 m), and a station in
-    /// Denmark, computed from the formulas in Python.
+    /// The example that circulates with implementations of the model (40° N, 100° W, 20:45 UTC: 23.784 m), and a
+    /// station in Denmark, computed from the formulas in Python.
     #[test]
     fn known_delays() {
         let model = Klobuchar {

@@ -7,51 +7,52 @@ use crate::{
 };
 use nalgebra::Vector3;
 
-/// A satellite at the time of transmission.
+/// The state of a satellite at the time of transmission.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SatelliteState {
-    /// Centre of mass, ECEF at the time of transmission, m.
+    /// The centre of mass, ECEF at the time of transmission, m; with broadcast ephemerides the antenna's phase centre.
     pub position: Vector3<f64>,
-    /// Velocity, m/s, inertial or relative to the Earth.
+    /// The velocity, m/s, inertial or relative to the Earth.
     pub velocity: Vector3<f64>,
-    /// Satellite clock minus GPS time, s, without the effect of its eccentric orbit.
+    /// Satellite clock minus GPS time, s, without the relativistic effect of the orbit's eccentricity.
     pub clock: f64,
-    /// Time from the clock's sample before to that after, s (zero: not interpolated).
+    /// The time between the neighbouring samples of the clock, s (zero: not interpolated).
     pub clock_interval: f64,
-    /// Time to the nearer of both, s.
+    /// The time to the nearer neighbouring sample of the clock, s.
     pub clock_distance: f64,
-    /// Standard deviation of a range by orbit and clock, m: what a broadcast ephemeris says of itself, zero of precise products.
+    /// The standard deviation of a range due to orbit and clock, m: the accuracy in a broadcast ephemeris, zero for
+    /// precise products.
     pub accuracy: f64,
 }
 
-/// Modelled observation of a satellite.
+/// The modelled observation of a satellite.
 ///
 /// P = range + c·dt + m·Z and L = P + `wind_up` + ambiguity with the receiver's clock c·dt, the wet zenith delay
 /// Z and its mapping m (published as 1 and 2), all in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
-    /// Distance between the phase centres with all that delays the signal but the receiver's clock,
-    /// the wet troposphere and the ambiguity; less the satellite's clock; m.
+    /// The distance between the phase centres, with all delays of the signal except the receiver's clock, the wet
+    /// troposphere and the ambiguity, minus the satellite's clock, m.
     pub range: f64,
-    /// Contribution of the wind-up to the ionosphere-free phase, m.
+    /// The contribution of the wind-up to the ionosphere-free phase, m.
     pub wind_up: f64,
-    /// The same in cycles, to be handed back in the next epoch.
+    /// The wind-up in cycles, to be passed on to the next epoch.
     pub wind_up_cycles: f64,
-    /// ECEF unit vector from the receiver to the satellite: minus ∂range/∂position.
+    /// The line of sight, an ECEF unit vector from the receiver to the satellite: minus ∂range/∂position.
     pub sight: Vector3<f64>,
-    /// The same to the east, north and up of the receiver: the last is the sine of the elevation.
+    /// The line of sight to the east, north and up of the receiver: the last component is the sine of the elevation.
     pub local: Vector3<f64>,
-    /// The same as azimuth and elevation there.
+    /// The line of sight as azimuth and elevation.
     pub direction: Direction,
     /// ∂P/∂Z, Niell's mapping of the wet delay.
     pub wet_mapping: f64,
 }
 
 impl Site<'_> {
-    /// The modelled observation of a satellite on two carriers from here; none where that is not finite, as for a
-    /// receiver at the satellite's place.
+    /// The modelled observation of a satellite on two carriers at this site; `None` where it is not finite, for example
+    /// for a receiver at the satellite's position.
     pub fn expect(
         &self,
         state: &SatelliteState,

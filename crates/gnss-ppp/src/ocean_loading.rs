@@ -6,8 +6,8 @@ use crate::GpsTime;
 use crate::astronomy::Arguments;
 use crate::trigonometry::cos;
 
-/// Multiples of solar time, s, h and p of the waves and a phase in quarter turns, by the convention of
-/// Schwiderski to which BLQ files refer (IERS Conventions 2010, section 7.1.2).
+/// The multiples of solar time, s, h and p of the waves, and a phase in quarter turns, by the convention of Schwiderski
+/// to which BLQ files refer (IERS Conventions 2010, section 7.1.2).
 const WAVES: [[i8; 5]; 11] = [
     [2, -2, 2, 0, 0],
     [2, 0, 0, 0, 0],
@@ -22,15 +22,15 @@ const WAVES: [[i8; 5]; 11] = [
     [0, 0, 2, 0, 0],
 ];
 
-/// Displacement of one station by the tides of the oceans: eleven waves, as a BLQ file lists them
-/// (M2 S2 N2 K2 K1 O1 P1 Q1 Mf Mm Ssa).
+/// The displacement of a station by ocean tide loading: eleven waves, as listed in a BLQ file (M2 S2 N2 K2 K1 O1 P1 Q1
+/// Mf Mm Ssa).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OceanLoading {
     /// Amplitudes, m: radially up, tangentially west, tangentially south.
     pub amplitude: [[f64; 11]; 3],
-    /// Phase lags behind Greenwich, degrees, in the same order.
+    /// Phase lags behind Greenwich, degrees: radially up, tangentially west, tangentially south.
     pub lag: [[f64; 11]; 3],
 }
 
@@ -38,8 +38,8 @@ impl OceanLoading {
     /// The station's displacement east, north and up, m; `ut1_minus_gps` (s) as for
     /// [`greenwich_sidereal_time`](crate::greenwich_sidereal_time).
     ///
-    /// The sum of the eleven waves alone. Their side lobes, above all the nodal ones over 18.6 years, are
-    /// left out: a tenth of the displacement, a millimetre or two on the worst coasts.
+    /// Only the sum of the eleven waves. Their side lobes, above all the nodal ones over 18.6 years, are omitted: a
+    /// tenth of the displacement, a millimetre or two on the worst coasts.
     pub fn displacement(&self, time: GpsTime, ut1_minus_gps: f64) -> Vector3<f64> {
         let angles = angles(&Arguments::at(time, ut1_minus_gps));
         let mut moved = [0.0; 3];
@@ -75,8 +75,8 @@ mod tests {
     use crate::GpsTime;
     use crate::astronomy::Arguments;
 
-    /// The test case of the IERS' program ARG2, 6 November 2008 at noon. Its Sun is older, and apparent: by the
-    /// 100 µrad of aberration, a micrometre of tide, they differ.
+    /// The test case of the IERS program ARG2, 6 November 2008 at noon. Its Sun is older, and apparent: they differ by
+    /// the 100 µrad of aberration, a micrometre of tide.
     #[test]
     fn the_test_case_of_the_conventions() {
         let expected = [
@@ -99,7 +99,7 @@ mod tests {
         }
     }
 
-    /// Where the wave's angle is its lag, the station is displaced by the amplitude.
+    /// Where the wave's angle equals its lag, the station is displaced by the amplitude.
     #[test]
     fn up_west_and_south_with_their_lags() {
         let time = GpsTime::new(59_025, 4_321.0);

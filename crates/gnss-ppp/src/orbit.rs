@@ -1,13 +1,13 @@
-//! Precise orbits: between their samples.
+//! Precise orbits: interpolation between samples.
 
 use crate::GpsTime;
 use crate::constants::EARTH_ROTATION;
 use nalgebra::Vector3;
 
-/// Number of samples that a polynomial goes through: degree 10 follows a GPS orbit sampled every 15
-/// minutes to millimetres.
+/// The number of samples that a polynomial goes through: degree 10 follows a GPS orbit sampled every 15 minutes to
+/// millimetres.
 const POINTS: usize = 11;
-/// Time by which the polynomial is extrapolated beyond the samples, s.
+/// How far the polynomial is extrapolated beyond the samples, s.
 const BEYOND: f64 = 1.0;
 
 /// One sample of a precise orbit.
@@ -17,43 +17,44 @@ const BEYOND: f64 = 1.0;
 pub struct OrbitSample {
     /// Seconds since the orbit's reference instant.
     pub second: f64,
-    /// Centre of mass, m, in the frame that does not rotate and is the Earth-fixed one at the
-    /// reference instant: there an orbit is smooth.
+    /// The centre of mass, m, in the inertial frame that coincides with the Earth-fixed one at the reference instant,
+    /// in which an orbit is smooth.
     pub position: Vector3<f64>,
 }
 
 impl OrbitSample {
-    /// A sample of the centre of mass (ECEF at `time`, m), for an orbit with this reference.
+    /// Converts a position of the centre of mass (ECEF at `time`, m) to a sample of an orbit with this reference.
     pub fn from_ecef(reference: GpsTime, time: GpsTime, position: &Vector3<f64>) -> Self {
         let second = time.since(reference);
         Self { second, position: rotated(position, EARTH_ROTATION * second) }
     }
 }
 
-/// Position and velocity of a satellite's centre of mass.
+/// The position and velocity of a satellite's centre of mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OrbitState {
-    /// Position, m, ECEF at the instant asked for.
+    /// The position, m, ECEF at the requested instant.
     pub position: Vector3<f64>,
-    /// Velocity, m/s, in the frame that does not rotate and is the ECEF one at that instant.
+    /// The velocity, m/s, in the inertial frame that coincides with the ECEF one at that instant.
     pub velocity: Vector3<f64>,
 }
 
-/// A satellite's precise orbit: samples in the order of time.
+/// A satellite's precise orbit: samples in chronological order.
 #[derive(Clone, Copy, Debug)]
 pub struct Orbit<'a> {
-    /// The instant from which the samples count.
+    /// The reference instant of the samples' times.
     pub reference: GpsTime,
-    /// Samples, ascending.
+    /// The samples, in ascending order of time.
     pub samples: &'a [OrbitSample],
 }
 
 impl Orbit<'_> {
-    /// The state at `time` by the polynomial through the 11 nearest samples; none where one of the 11 is
-    /// missing, or farther than a second outside of the samples: what is received at the time of the
-    /// first one was sent before it.
+    /// The state at `time`, from the polynomial through the 11 nearest samples.
+    ///
+    /// `None` where one of the 11 is missing, or more than a second outside the samples; the second is needed because
+    /// what is received at the time of the first sample was sent before it.
     pub fn at(&self, time: GpsTime) -> Option<OrbitState> {
         let second = time.since(self.reference);
         let (first, last) = (self.samples.first()?.second, self.samples.last()?.second);
@@ -81,7 +82,7 @@ impl Orbit<'_> {
     }
 }
 
-/// The polynomial through equidistant samples and its derivative, `place` steps after the first.
+/// Evaluates the polynomial through equidistant samples and its derivative, `place` steps after the first.
 fn through(samples: &[OrbitSample; POINTS], place: f64) -> (Vector3<f64>, Vector3<f64>) {
     /// Barycentric weights of equidistant points: binomials of alternating sign.
     const WEIGHTS: [f64; POINTS] =
@@ -89,12 +90,12 @@ fn through(samples: &[OrbitSample; POINTS], place: f64) -> (Vector3<f64>, Vector
     let mut position = Vector3::zeros();
     let mut velocity = Vector3::zeros();
     let (mut sum, mut slope) = (0.0, 0.0);
-    // Positions are taken from the nearest one: beside it, where its share is without bounds, all digits count.
+    // Positions are relative to the nearest sample: beside it, where its share grows without bounds, all digits count.
     let nearest = (place + 0.5).clamp(0.0, POINTS as f64 - 1.0) as usize;
     let origin = samples.get(nearest).map_or_else(Vector3::zeros, |sample| sample.position);
     for (index, (sample, weight)) in samples.iter().zip(WEIGHTS).enumerate() {
         let distance = place - index as f64;
-        // On a sample the formula is 0/0; an attostep beside it, it is not.
+        // On a sample the formula is 0/0, but not an attostep beside it.
         let distance = if distance.abs() < 1e-18 { 1e-18 } else { distance };
         let share = weight / distance;
         let relative = sample.position - origin;

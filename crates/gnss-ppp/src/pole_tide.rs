@@ -4,15 +4,17 @@ use crate::GpsTime;
 use crate::solid_tide::Station;
 use crate::trigonometry::Turn;
 
-/// Days of a year.
+/// The length of a year, days.
 const YEAR: f64 = 365.25;
-/// The secular pole of 2000, mas, and what a year adds (update of 2018 to section 7.1.4).
+/// The secular pole of 2000, mas, and its change per year (update of 2018 to section 7.1.4).
 const SECULAR: [[f64; 2]; 2] = [[55.0, 1.677], [320.5, 3.460]];
 
-/// Displacement of a station at `position` (ECEF, m) by the tide of the pole, ECEF, m: up to 25 mm in height and 7 mm across.
+/// The displacement of a station at `position` (ECEF, m) by the pole tide, ECEF, m: up to 25 mm in height and 7 mm
+/// horizontally.
 ///
-/// The Earth's axis wanders over its crust, and what turns with it gives way. `pole` is where the axis is: x towards Greenwich, y
-/// towards 90° west, rad, as files of the Earth's rotation have it. IERS Conventions 2010, section 7.1.4 (7.26), about the secular pole.
+/// The Earth's rotation axis moves relative to its crust, and the changing centrifugal force deforms the Earth. `pole`
+/// is the position of the pole: x towards Greenwich, y towards 90° west, rad, as in Earth rotation files. IERS
+/// Conventions 2010, section 7.1.4 (7.26), relative to the secular pole.
 ///
 /// Add it to coordinates of the ITRF or the IGS. Zero at the Earth's centre.
 pub fn pole_tide(position: &Vector3<f64>, pole: [f64; 2], time: GpsTime) -> Vector3<f64> {
@@ -25,7 +27,7 @@ pub fn pole_tide(position: &Vector3<f64>, pole: [f64; 2], time: GpsTime) -> Vect
     let Turn { sine, cosine } = station.longitude;
     let along = m1 * cosine + m2 * sine;
     let across = m1 * sine - m2 * cosine;
-    // (7.26), m for seconds of arc, by the latitude in place of the colatitude.
+    // (7.26), m for arcseconds, with the latitude in place of the colatitude.
     let up = -0.066 * sine_of_latitude * cosine_of_latitude * along;
     let double = sine_of_latitude * sine_of_latitude - cosine_of_latitude * cosine_of_latitude;
     let north = 0.009 * double * along;
@@ -39,7 +41,7 @@ mod tests {
     use crate::GpsTime;
     use nalgebra::Vector3;
 
-    /// The formula in numpy, by the colatitude on a sphere.
+    /// Computed with numpy from the formula, with the colatitude on a sphere.
     #[test]
     fn as_elsewhere() {
         let pole = [0.156_804_f64, 0.417_332].map(|seconds| (seconds / 3600.0).to_radians());
@@ -63,7 +65,7 @@ mod tests {
         }
     }
 
-    /// A pole that is where it always is moves nothing, nor is there anything at the Earth's centre and over the axis.
+    /// A pole at its secular position moves nothing, nor is anything displaced at the Earth's centre or on the axis.
     #[test]
     fn nothing_moves() {
         let noon = GpsTime::new(51_544, 43_200.0);

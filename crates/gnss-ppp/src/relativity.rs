@@ -3,7 +3,7 @@ use nalgebra::Vector3;
 
 use crate::constants::{EARTH_GRAVITY, EARTH_ROTATION, SPEED_OF_LIGHT};
 
-/// Advance of a satellite's clock due to the eccentricity of its orbit, s: −2·r·v/c².
+/// The advance of a satellite's clock due to the eccentricity of its orbit, s: −2·r·v/c².
 ///
 /// Add it to the clock of an orbit product or a broadcast message. `position` (m) and `velocity` (m/s)
 /// belong to the time of transmission; the velocity may be inertial or relative to the Earth, as
@@ -12,8 +12,8 @@ pub fn eccentricity_clock(position: &Vector3<f64>, velocity: &Vector3<f64>) -> f
     -2.0 * position.dot(velocity) / (SPEED_OF_LIGHT * SPEED_OF_LIGHT)
 }
 
-/// Shapiro's delay of the signal in the Earth's gravity, m: some 13 to 19 mm for
-/// GPS. Add it to the modelled range. (IERS Conventions 2010, 11.17.)
+/// The Shapiro delay of the signal in the Earth's gravity, m: some 13 to 19 mm for GPS. Add it to the modelled range.
+/// (IERS Conventions 2010, 11.17.)
 ///
 /// Zero where it is not defined: for a point at the Earth's centre or a ray through it.
 pub fn shapiro_delay(satellite: &Vector3<f64>, receiver: &Vector3<f64>) -> f64 {
@@ -24,17 +24,18 @@ pub fn shapiro_delay(satellite: &Vector3<f64>, receiver: &Vector3<f64>) -> f64 {
     if delay.is_finite() { delay } else { 0.0 }
 }
 
-/// Sagnac's correction: lengthening of the range by the Earth's rotation during the signal's flight, m, to first order.
+/// The Sagnac correction: the lengthening of the range by the Earth's rotation during the signal's flight, m, to first
+/// order.
 ///
-/// Both positions are ECEF (m), the satellite's in the axes of the time of transmission, the receiver's
-/// in those of the reception. Add it to their distance; up to 40 m, wrong by at most 0.1 mm.
+/// Both positions are ECEF (m), the satellite's in the axes of the time of transmission, the receiver's in those of the
+/// time of reception. Add it to their distance; up to 40 m, wrong by at most 0.1 mm.
 pub fn sagnac(satellite: &Vector3<f64>, receiver: &Vector3<f64>) -> f64 {
     EARTH_ROTATION / SPEED_OF_LIGHT * (satellite.x * receiver.y - satellite.y * receiver.x)
 }
 
-/// An ECEF vector in the ECEF axes of `seconds` later, while it stands still in space.
+/// Converts an ECEF vector that is fixed in inertial space to the ECEF axes of `seconds` later.
 ///
-/// With the time of flight, a satellite's position at transmission in the axes of the reception.
+/// With the time of flight it gives a satellite's position at transmission in the axes of the reception.
 pub fn carried_along(vector: &Vector3<f64>, seconds: f64) -> Vector3<f64> {
     let (sine, cosine) = libm::sincos(EARTH_ROTATION * seconds);
     let [x, y, z] = *vector.as_array();
@@ -48,8 +49,8 @@ mod tests {
     use super::{carried_along, eccentricity_clock, sagnac, shapiro_delay};
     use crate::constants::{EARTH_GRAVITY, EARTH_ROTATION, SPEED_OF_LIGHT};
 
-    /// The interface specification gives the same as F·e·√A·sin E with F = −4.442807633e-10 s/√m,
-    /// up to its GM, 7e-8 smaller in the square root.
+    /// The interface specification states this as F·e·√A·sin E with F = −4.442807633e-10 s/√m, the same up to its GM,
+    /// 7e-8 smaller in the square root.
     #[test]
     fn eccentric_orbit_as_in_the_interface_specification() {
         let (root, eccentricity, anomaly) = (5_153.7_f64, 0.02_f64, 1.1_f64);

@@ -4,42 +4,42 @@ use crate::{
 };
 use nalgebra::{Matrix3, Vector3};
 
-/// Properties of a receiver besides its position.
+/// The properties of a receiver besides its position.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Receiver<'a> {
-    /// Antenna on L1 and L2, where known.
+    /// The antenna on L1 and L2 of GPS, where known.
     pub antenna: Option<[Pattern<'a>; 2]>,
-    /// The same on the two carriers of Galileo that are observed.
+    /// The antenna on the two observed carriers of Galileo, where known.
     pub galileo_antenna: Option<[Pattern<'a>; 2]>,
-    /// The same on the two carriers of GLONASS.
+    /// The antenna on the two carriers of GLONASS, where known.
     pub glonass_antenna: Option<[Pattern<'a>; 2]>,
-    /// The same on the two carriers of BeiDou that are observed.
+    /// The antenna on the two observed carriers of BeiDou, where known.
     pub beidou_antenna: Option<[Pattern<'a>; 2]>,
-    /// From the marker to the antenna's reference point: east, north, up, m.
+    /// The offset from the marker to the antenna's reference point: east, north, up, m.
     pub eccentricity: [f64; 3],
-    /// Ocean loading of the station, where known.
+    /// The ocean loading of the station, where known.
     pub ocean_loading: Option<&'a OceanLoading>,
-    /// Where the Earth's axis is, as for [`pole_tide`](crate::pole_tide()), rad, where known.
+    /// The position of the pole, as for [`pole_tide`](crate::pole_tide()), rad, where known.
     pub pole: Option<[f64; 2]>,
-    /// UT1 (or UTC) ahead of GPS time, s: the leap seconds since 1980, negated.
+    /// UT1 (or UTC) minus GPS time, s: the leap seconds since 1980, negated.
     pub ut1_minus_gps: f64,
-    /// Corrections that are applied.
+    /// The corrections that are applied.
     pub corrections: Corrections,
 }
 
-/// A receiver's surroundings at one epoch: all that its satellites have in common.
+/// A receiver's site at one epoch: everything that its satellites have in common.
 #[derive(Clone, Copy, Debug)]
 pub struct Site<'a> {
     pub(crate) receiver: Receiver<'a>,
     pub(crate) bodies: Bodies,
     pub(crate) enu_from_ecef: Matrix3<f64>,
-    /// Position of the antenna's reference point, with the tides, ECEF, m.
+    /// The position of the antenna's reference point, with the tides, ECEF, m.
     pub(crate) antenna: Vector3<f64>,
     pub(crate) troposphere: Troposphere,
 }
 
 impl<'a> Site<'a> {
-    /// The surroundings of a marker at `position` (ECEF, m, free of tides).
+    /// The site of a marker at `position` (ECEF, m, free of tides).
     pub fn new(receiver: &Receiver<'a>, position: &Vector3<f64>, time: GpsTime) -> Self {
         let bodies = Bodies::at(time, receiver.ut1_minus_gps);
         let place = Geodetic::from_ecef(position);

@@ -1,8 +1,8 @@
-//! Cycle slips, as the combinations of one satellite's observations show them.
+//! Detection of cycle slips from combinations of one satellite's observations.
 
 use crate::{Carriers, GpsTime};
 
-/// Reason of a cycle slip.
+/// The reason for assuming a cycle slip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -13,28 +13,27 @@ pub enum Slip {
     LossOfLock,
     /// The geometry-free phase jumped.
     GeometryFree,
-    /// The Melbourne–Wübbena combination jumped, and something else agrees with it: see
-    /// [`Arc::is_suspicious`] and [`Arc::stays_away`].
+    /// The Melbourne–Wübbena combination jumped, and a second sign confirms it: see [`Arc::is_suspicious`] and
+    /// [`Arc::stays_away`].
     MelbourneWuebbena,
     /// The phases of all satellites jumped against their codes at once.
     Clock,
 }
 
-/// Thresholds of the slip detection.
+/// The thresholds of cycle slip detection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SlipLimits {
-    /// The longest time without observations that an ambiguity survives, s.
+    /// The longest gap in observations that an ambiguity survives, s.
     pub gap: f64,
-    /// Jump of L1 − L2 between epochs, m, at least. Slips of 9 and 7 cycles jump by 3 mm only.
+    /// The minimum jump of L1 − L2 between epochs, m. Slips of 9 and 7 cycles jump by only 3 mm.
     pub geometry_free: f64,
-    /// Jump of the Melbourne–Wübbena combination beside its running mean, cycles of the wide lane,
-    /// at least.
+    /// The minimum jump of the Melbourne–Wübbena combination from its running mean, cycles of the wide lane.
     pub melbourne_wuebbena: f64,
-    /// Either jump in its own running standard deviations: this must be exceeded, too.
+    /// The number of its own running standard deviations that either jump must exceed, too.
     pub deviations: f64,
-    /// Whether the receiver's own flag of lost lock counts.
+    /// Whether the receiver's own loss-of-lock flag counts.
     pub loss_of_lock: bool,
 }
 
@@ -50,7 +49,7 @@ impl Default for SlipLimits {
     }
 }
 
-/// State of the slip detection in one satellite's arc (Blewitt 1990).
+/// The state of slip detection in one satellite's arc (Blewitt 1990).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -58,31 +57,31 @@ pub struct Arc {
     carriers: Carriers,
     last: GpsTime,
     geometry_free: f64,
-    /// Variance of the jumps, m².
+    /// The variance of the geometry-free jumps, m².
     geometry_free_variance: f64,
     wide_lane: f64,
-    /// Around the running mean, cycles².
+    /// The variance of the wide lane about its running mean, cycles².
     wide_lane_variance: f64,
     count: u16,
-    /// In how many epochs, up to the last one, the wide lane was off.
+    /// The number of consecutive epochs, up to the last one, in which the wide lane was off.
     off: u16,
-    /// Where it was in the last of them, beside its mean, cycles.
+    /// The deviation of the wide lane from its mean in the last of these epochs, cycles.
     away: f64,
-    /// Whether it was there in the one before, too.
+    /// Whether the deviation was the same in the epoch before.
     stays: bool,
 }
 
-/// The running mean forgets over this many epochs: multipath of the code wanders.
+/// The memory of the running mean, epochs: code multipath wanders.
 const MEMORY: u16 = 100;
-/// Standard deviation of one epoch's wide lane before any is known, cycles.
+/// The initial standard deviation of one epoch's wide lane, cycles.
 const WIDE_LANE_DEVIATION: f64 = 0.7;
-/// Standard deviation of a jump of the geometry-free phase before any is known, m.
+/// The initial standard deviation of a jump of the geometry-free phase, m.
 const GEOMETRY_FREE_DEVIATION: f64 = 0.01;
-/// Number of epochs for which a jump of the wide lane is suspicious; after these its mean moves there.
+/// The number of epochs for which a jump of the wide lane is suspicious; afterwards its mean moves there.
 const ACCUSTOMED: u16 = 10;
 
 impl Arc {
-    /// An arc that begins on two carriers: `phase` in cycles, `code` in m.
+    /// Begins an arc on two carriers: `phase` in cycles, `code` in m.
     pub fn begin(time: GpsTime, carriers: Carriers, phase: [f64; 2], code: [f64; 2]) -> Self {
         Self {
             carriers,
@@ -98,10 +97,9 @@ impl Arc {
         }
     }
 
-    /// Goes on with the next epoch; a slip begins a new arc.
+    /// Continues with the next epoch; a slip begins a new arc.
     ///
-    /// A jump of the wide lane alone is no slip yet, as an outlier of the code looks the same:
-    /// see [`Self::is_suspicious`].
+    /// A jump of the wide lane alone is no slip yet, as a code outlier looks the same: see [`Self::is_suspicious`].
     pub fn observe(
         &mut self,
         time: GpsTime,
@@ -136,14 +134,14 @@ impl Arc {
         None
     }
 
-    /// A new arc of the same satellite: what is known of its ionosphere stays.
+    /// Begins a new arc of the same satellite, which keeps what is known of its ionosphere.
     pub fn restart(&mut self, time: GpsTime, phase: [f64; 2], code: [f64; 2]) {
         let variance = self.geometry_free_variance;
         *self = Self::begin(time, self.carriers, phase, code);
         self.geometry_free_variance = variance;
     }
 
-    /// The wide lane is `jump` beside its mean.
+    /// Processes a wide lane that is `jump` from its mean.
     fn widen(&mut self, jump: f64, share: f64, limits: &SlipLimits) {
         let spread = limits.deviations * libm::sqrt(self.wide_lane_variance);
         if jump.is_nan() {
@@ -163,27 +161,29 @@ impl Arc {
         }
     }
 
-    /// Whether the wide lane is not where it was: after a slip, or for an outlier of the code. A second sign,
-    /// such as a phase that does not fit, confirms the slip.
+    /// Whether the wide lane has moved, after a slip or because of a code outlier. A second sign, such as a phase that
+    /// does not fit, confirms the slip.
     pub const fn is_suspicious(&self) -> bool {
         self.off > 0
     }
 
-    /// Whether the wide lane is not where it was, and stays there: seen in two epochs in a row, it is a slip. (An
-    /// outlier of the code is elsewhere in the next epoch; a bias of the code is taken for a slip, too.)
+    /// Whether the wide lane has moved and stays there: seen in two successive epochs, it is a slip. (A code outlier is
+    /// elsewhere in the next epoch; a code bias is taken for a slip, too.)
     pub const fn stays_away(&self) -> bool {
         self.stays
     }
 
-    /// By how much the phases jumped against the codes, m: what the Melbourne–Wübbena combination of an epoch is away
-    /// from the mean of the arc. If that is the same for all satellites, it is the receiver's clock.
+    /// The jump of the phases against the codes, m: the deviation of an epoch's Melbourne–Wübbena combination from the
+    /// mean of the arc.
+    ///
+    /// If it is the same for all satellites, it is due to the receiver's clock.
     ///
     /// `phase` in cycles, `code` in m.
     pub const fn jump(&self, phase: [f64; 2], code: [f64; 2]) -> f64 {
         self.carriers.wide_lane() * (self.carriers.melbourne_wuebbena(phase, code) - self.wide_lane)
     }
 
-    /// Time of the last observation of the satellite.
+    /// The time of the last observation of the satellite.
     pub const fn last(&self) -> GpsTime {
         self.last
     }

@@ -5,8 +5,8 @@ use crate::constants::{EARTH_RADIUS, MOON_TO_EARTH_MASS, SUN_TO_EARTH_MASS};
 use crate::trigonometry::Turn;
 use crate::{Bodies, GpsTime};
 
-/// Displacement by the diurnal tides beyond the nominal Love numbers, mm (IERS Conventions 2010, table 7.3a):
-/// multiples of τ, s, h, p, N′ and p₁, then radial in and out of phase, transverse in and out of phase.
+/// The displacement by the diurnal tides beyond the nominal Love numbers, mm (IERS Conventions 2010, table 7.3a):
+/// multiples of τ, s, h, p, N′ and p₁, then radial in phase and out of phase, transverse in phase and out of phase.
 const DIURNAL: [([i8; 6], [f64; 4]); 11] = [
     ([1, -2, 0, 1, 0, 0], [-0.08, 0.00, -0.01, 0.01]),
     ([1, -1, 0, 0, -1, 0], [-0.10, 0.00, 0.00, 0.00]),
@@ -20,7 +20,8 @@ const DIURNAL: [([i8; 6], [f64; 4]); 11] = [
     ([1, 1, 1, 0, 0, -1], [-0.50, -0.01, 0.03, 0.00]),
     ([1, 1, 2, 0, 0, 0], [-0.11, 0.01, 0.01, 0.00]),
 ];
-/// The same of the long-period tides (table 7.3b).
+/// The displacement by the long-period tides beyond the nominal Love numbers, mm, in the layout of [`DIURNAL`] (table
+/// 7.3b).
 const LONG_PERIOD: [([i8; 6], [f64; 4]); 5] = [
     ([0, 0, 0, 0, 1, 0], [0.47, 0.16, 0.23, 0.07]),
     ([0, 0, 2, 0, 0, 0], [-0.20, -0.11, -0.12, -0.05]),
@@ -29,16 +30,15 @@ const LONG_PERIOD: [([i8; 6], [f64; 4]); 5] = [
     ([0, 2, 0, 0, 1, 0], [-0.05, -0.06, -0.05, -0.03]),
 ];
 
-/// Displacement of a station at `position` (ECEF, m) by the tides of the solid Earth, ECEF, m: up to 0.4 m.
+/// The displacement of a station at `position` (ECEF, m) by the solid Earth tides, ECEF, m: up to 0.4 m.
 ///
 /// The model of the IERS Conventions 2010, section 7.1.1: tides of degree 2 and 3 from the Sun and the Moon
 /// with the Love and Shida numbers' dependence on latitude and their imaginary parts (step 1), and the
 /// corrections to the diurnal and long-period waves (step 2). On the test cases of the Conventions' program it
 /// agrees to 0.09 mm.
 ///
-/// Add it to coordinates of the ITRF or the IGS. These are conventionally free of tides, also of the permanent
-/// one, which the displacement therefore contains. The tide of the pole is another effect:
-/// [`pole_tide`](crate::pole_tide()).
+/// Add it to coordinates of the ITRF or the IGS. These are conventionally free of tides, including the permanent one,
+/// which the displacement therefore contains. The pole tide is another effect: [`pole_tide`](crate::pole_tide()).
 ///
 /// `bodies` belong to the same instant. Zero at the Earth's centre.
 pub fn solid_tide(
@@ -53,12 +53,12 @@ pub fn solid_tide(
     from_sun + from_moon + station.step_2(&Arguments::at(time, ut1_minus_gps))
 }
 
-/// The directions of a place on a sphere, and its geocentric latitude.
+/// The local directions of a place on a sphere, and its geocentric latitude.
 pub(crate) struct Station {
     up: Vector3<f64>,
     north: Vector3<f64>,
     east: Vector3<f64>,
-    /// From the axis into the station's meridian.
+    /// The unit vector from the Earth's axis into the station's meridian.
     outward: Vector3<f64>,
     pub(crate) sine: f64,
     pub(crate) cosine: f64,
@@ -69,7 +69,7 @@ impl Station {
     pub(crate) fn at(position: &Vector3<f64>) -> Option<Self> {
         let up = position.try_normalize(f64::MIN_POSITIVE)?;
         let (sine, cosine) = (up.z, libm::hypot(up.x, up.y));
-        // At a pole any meridian is as good.
+        // At a pole any meridian will do.
         let longitude = if cosine > 0.0 {
             Turn { sine: up.y / cosine, cosine: up.x / cosine }
         } else {
@@ -85,7 +85,7 @@ impl Station {
         self.up * up + self.north * north + self.east * east
     }
 
-    /// Displacement by one body, in the time domain.
+    /// The displacement by one body, in the time domain.
     fn step_1(&self, body: &Vector3<f64>, mass: f64) -> Vector3<f64> {
         let Some(direction) = body.try_normalize(f64::MIN_POSITIVE) else {
             return Vector3::zeros();
@@ -95,7 +95,7 @@ impl Station {
         let degree_2 = mass * EARTH_RADIUS * ratio * ratio * ratio;
         let degree_3 = degree_2 * ratio;
 
-        // Degree 2 (7.5) and degree 3 (7.6); the part along the body has the coefficient `towards`.
+        // Degree 2 (7.5) and degree 3 (7.6); the component along the body has the coefficient `towards`.
         let zonal = 1.5 * sine * sine - 0.5;
         let (h2, l2) = (0.6078 - 0.0006 * zonal, 0.0847 + 0.0002 * zonal);
         let (h3, l3) = (0.292, 0.015);
@@ -154,7 +154,7 @@ impl Station {
     }
 }
 
-/// Doodson's arguments, of which the waves' are sums of multiples; N′ is minus the longitude of the Moon's node.
+/// Doodson's arguments, whose multiples add up to those of the waves; N′ is minus the longitude of the Moon's node.
 fn doodson(arguments: &Arguments) -> [Turn; 6] {
     let moon_and_sun =
         [arguments.lunar_time(), arguments.moon_longitude(), arguments.sun_longitude()];
@@ -170,8 +170,8 @@ mod tests {
     use super::solid_tide;
     use crate::{Bodies, GpsTime};
 
-    /// The test cases of the IERS' program DEHANTTIDEINEL, at midnight UTC; the fourth, with the Sun at a
-    /// tenth of its distance, is left out.
+    /// The test cases of the IERS program DEHANTTIDEINEL, at midnight UTC; the fourth, with the Sun at a tenth of its
+    /// distance, is omitted.
     #[test]
     fn the_test_cases_of_the_conventions() {
         for (day, leap, position, sun, moon, expected) in [

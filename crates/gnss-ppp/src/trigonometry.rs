@@ -1,17 +1,17 @@
-//! Sines and cosines of angles in rad, all through `sincos`: `sin` and `cos` of their own would add 2.4 kB of flash to the image of a
-//! positioning filter.
+//! Sines and cosines of angles in rad, all through `sincos`: separate `sin` and `cos` would add 2.4 kB of flash to the
+//! image of a positioning filter.
 
-/// Sine of an angle, rad.
+/// The sine of an angle, rad.
 pub(crate) fn sin(angle: f64) -> f64 {
     libm::sincos(angle).0
 }
 
-/// Cosine of an angle, rad.
+/// The cosine of an angle, rad.
 pub(crate) fn cos(angle: f64) -> f64 {
     libm::sincos(angle).1
 }
 
-/// Sine and cosine of an angle.
+/// The sine and cosine of an angle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turn {
     pub(crate) sine: f64,
@@ -19,16 +19,16 @@ pub(crate) struct Turn {
 }
 
 impl Turn {
-    /// Of no angle.
+    /// The zero angle.
     pub(crate) const NONE: Self = Self { sine: 0.0, cosine: 1.0 };
 
-    /// Of an angle, rad.
+    /// Computes the sine and cosine of an angle, rad.
     pub(crate) fn of(angle: f64) -> Self {
         let (sine, cosine) = libm::sincos(angle);
         Self { sine, cosine }
     }
 
-    /// Of the sum of two angles.
+    /// The sum of two angles.
     #[inline(never)] // Wanted at several places, once in flash.
     pub(crate) fn plus(self, other: Self) -> Self {
         Self {
@@ -37,7 +37,7 @@ impl Turn {
         }
     }
 
-    /// Of a sum of multiples of as many angles, each multiple a small number: faster than a sine of the sum.
+    /// The sum of small multiples of angles: faster than a sine of the sum.
     #[inline(never)] // Wanted at several places, once in flash.
     pub(crate) fn sum(multiples: &[i8], angles: &[Self]) -> Self {
         let mut sum = Self::NONE;

@@ -8,8 +8,7 @@ use nalgebra::Vector3;
 /// Coefficients a, b, c of a mapping function.
 type Coefficients = [f64; 3];
 
-/// Latitudes of 15°, 30°, 45°, 60° and 75°: the mean over the year and the seasonal amplitude of the
-/// hydrostatic coefficients, and the wet ones (Niell 1996, tables 3 and 4).
+/// The annual mean of the hydrostatic coefficients at latitudes of 15°, 30°, 45°, 60° and 75° (Niell 1996, table 3).
 const HYDROSTATIC_MEAN: [Coefficients; 5] = [
     [1.276_993_4e-3, 2.915_369_5e-3, 62.610_505e-3],
     [1.268_323_0e-3, 2.915_229_9e-3, 62.837_393e-3],
@@ -17,6 +16,7 @@ const HYDROSTATIC_MEAN: [Coefficients; 5] = [
     [1.219_604_9e-3, 2.902_256_5e-3, 63.824_265e-3],
     [1.204_599_6e-3, 2.902_491_2e-3, 64.258_455e-3],
 ];
+/// The seasonal amplitude of the hydrostatic coefficients at the same latitudes (Niell 1996, table 3).
 const HYDROSTATIC_AMPLITUDE: [Coefficients; 5] = [
     [0.0, 0.0, 0.0],
     [1.270_962_6e-5, 2.141_497_9e-5, 9.012_840_0e-5],
@@ -24,6 +24,7 @@ const HYDROSTATIC_AMPLITUDE: [Coefficients; 5] = [
     [3.400_045_2e-5, 7.256_272_2e-5, 84.795_348e-5],
     [4.120_219_1e-5, 11.723_375e-5, 170.372_06e-5],
 ];
+/// The wet coefficients at the same latitudes (Niell 1996, table 4).
 const WET: [Coefficients; 5] = [
     [5.802_189_7e-4, 1.427_526_8e-3, 4.347_296_1e-2],
     [5.679_484_7e-4, 1.513_862_5e-3, 4.672_951_0e-2],
@@ -31,37 +32,37 @@ const WET: [Coefficients; 5] = [
     [5.972_754_2e-4, 1.500_742_8e-3, 4.462_698_2e-2],
     [6.164_169_3e-4, 1.759_908_2e-3, 5.473_603_8e-2],
 ];
-/// The same of the correction for the station's height.
+/// The coefficients of the correction for the station's height.
 const HEIGHT: Coefficients = [2.53e-5, 5.49e-3, 1.14e-3];
 
-/// Factors from delays at the zenith to those at the elevation of a satellite.
+/// Factors from zenith delays to those at the elevation of a satellite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Mapping {
-    /// Mapping of the dry air, in hydrostatic equilibrium.
+    /// The mapping of the dry air, in hydrostatic equilibrium.
     pub hydrostatic: f64,
-    /// Mapping of the water vapour: the partial derivative of the range by the zenith wet delay.
+    /// The mapping of the water vapour: the partial derivative of the range by the zenith wet delay.
     pub wet: f64,
 }
 
-/// The troposphere over a station at one epoch: Saastamoinen's zenith delay of a standard atmosphere, and
-/// Niell's mapping functions (1996, *J. Geophys. Res.* 101 B2), good from 3° of elevation up.
+/// The troposphere over a station at one epoch: Saastamoinen's zenith delay of a standard atmosphere, and Niell's
+/// mapping functions (1996, *J. Geophys. Res.* 101 B2), valid from 3° of elevation up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Troposphere {
     hydrostatic: Coefficients,
     wet: Coefficients,
-    /// Height of the station, km.
+    /// The height of the station, km.
     height: f64,
-    /// Zenith hydrostatic delay, m.
+    /// The zenith hydrostatic delay, m.
     zenith_hydrostatic: f64,
 }
 
 impl Troposphere {
-    /// The troposphere over a place in a season; to be computed once an epoch at most.
+    /// The troposphere over a place in a season; compute it once an epoch at most.
     pub fn over(place: &Geodetic, time: GpsTime) -> Self {
-        // Days since 28 January 2000, as the years of the tables have 365.25 days; half a year off in
-        // the south. Against the day of the calendar's year that is a day at most: some 10 µm at 5°.
+        // Counted from 28 January 2000, as the years of the tables have 365.25 days, and half a year off in the south.
+        // This differs from the day of the calendar year by a day at most: some 10 µm at 5°.
         let season = (time.days_since_j2000(0.0) - 26.5) / 365.25
             + if place.latitude < 0.0 { 0.5 } else { 0.0 };
         let winter = cos(TAU * season);
@@ -78,17 +79,17 @@ impl Troposphere {
         }
     }
 
-    /// Zenith delay of the dry air, m.
+    /// The zenith delay of the dry air, m.
     pub const fn zenith_hydrostatic(&self) -> f64 {
         self.zenith_hydrostatic
     }
 
-    /// The mapping to an elevation (rad). Below one degree it stays as at one degree.
+    /// The mapping to an elevation (rad). Below one degree it stays at its value for one degree.
     pub fn mapping(&self, elevation: f64) -> Mapping {
         self.mapping_of_sine(sin(elevation))
     }
 
-    /// The same from the elevation's sine.
+    /// The mapping to an elevation given by its sine.
     pub(crate) fn mapping_of_sine(&self, sine: f64) -> Mapping {
         // The sine of one degree.
         const LOWEST: f64 = 0.017_452_406_437_283_51;
@@ -100,17 +101,17 @@ impl Troposphere {
         }
     }
 
-    /// Delay of the dry air towards an elevation (rad), m: add it to the modelled range.
+    /// The delay of the dry air towards an elevation (rad), m: add it to the modelled range.
     pub fn hydrostatic(&self, elevation: f64) -> f64 {
         self.zenith_hydrostatic * self.mapping(elevation).hydrostatic
     }
 }
 
-/// Zenith delay of the dry air, m, by Saastamoinen (1972, as Davis et al. 1985 have it), with the pressure
-/// of the standard atmosphere at the height.
+/// The zenith delay of the dry air, m, by Saastamoinen (1972, in the form of Davis et al. 1985), with the pressure of
+/// the standard atmosphere at the height.
 ///
-/// The height should be above the sea; the ellipsoid instead costs 0.3 mm a metre, which an estimated wet
-/// delay takes up almost wholly.
+/// The height should be above sea level; the ellipsoidal height instead costs 0.3 mm per metre, which an estimated wet
+/// delay absorbs almost completely.
 pub fn zenith_hydrostatic(place: &Geodetic) -> f64 {
     let height = in_troposphere(place.height);
     let pressure = 1_013.25 * libm::pow(1.0 - 2.2557e-5 * height, 5.2568);
@@ -118,28 +119,30 @@ pub fn zenith_hydrostatic(place: &Geodetic) -> f64 {
     0.002_276_8 * pressure / gravity
 }
 
-/// Zenith delay of the water vapour, m, by Saastamoinen with the standard atmosphere's temperature and a
-/// relative humidity between 0 and 1: where a filter may start, some 0.05 m wrong.
+/// The zenith delay of the water vapour, m, by Saastamoinen with the standard atmosphere's temperature and a relative
+/// humidity between 0 and 1: an initial value for a filter, some 0.05 m wrong.
 pub fn zenith_wet(place: &Geodetic, humidity: f64) -> f64 {
     let temperature = 288.15 - 6.5e-3 * in_troposphere(place.height);
     let saturated = 6.108 * libm::exp((17.15 * temperature - 4_684.0) / (temperature - 38.45));
     0.002_277 * (1_255.0 / temperature + 0.05) * saturated * humidity
 }
 
-/// The formulas' heights end below the stratosphere.
+/// Limits a height to the range of the formulas, which ends below the stratosphere.
 fn in_troposphere(height: f64) -> f64 {
     height.clamp(-1_000.0, 11_000.0)
 }
 
-/// What a gradient of the troposphere to the north and one to the east, m, add to a range along a unit vector to the east, north
-/// and up: ∂P/∂G, by Chen and Herring (1997), with C = 0.0032, their value for the total delay. Not a number of no direction.
+/// The partial derivatives ∂P/∂G of a range by the troposphere's gradients to the north and to the east, along a unit
+/// vector to the east, north and up.
+///
+/// By Chen and Herring (1997), with C = 0.0032, their value for the total delay. NaN for a zero vector.
 pub fn gradient_mapping(local: &Vector3<f64>) -> [f64; 2] {
     let [east, north, up] = *local.as_array();
     let total = up * up + 0.0032 * libm::sqrt(east * east + north * north);
     [north / total, east / total]
 }
 
-/// Linear between the latitudes of a table, constant beyond (rad, not negative).
+/// Interpolates linearly between the latitudes of a table, constant beyond (rad, not negative).
 fn at_latitude(table: &[Coefficients; 5], latitude: f64) -> Coefficients {
     let place = (latitude.to_degrees() / 15.0 - 1.0).clamp(0.0, 4.0);
     let below = libm::floor(place);
@@ -153,7 +156,7 @@ fn at_latitude(table: &[Coefficients; 5], latitude: f64) -> Coefficients {
     coefficients
 }
 
-/// Marini's continued fraction, one at the zenith.
+/// Marini's continued fraction, which is one at the zenith.
 fn fraction(coefficients: &Coefficients, sine: f64) -> f64 {
     let [a, b, c] = *coefficients;
     (1.0 + a / (1.0 + b / (1.0 + c))) / (sine + a / (sine + b / (sine + c)))

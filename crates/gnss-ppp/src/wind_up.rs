@@ -2,14 +2,13 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::BodyAxes;
 
-/// Wind-up, cycles: what the rotation of the satellite's antenna relative to the receiver's adds to a carrier
-/// phase (Wu et al. 1993). Subtract that many wavelengths from the measured phase.
+/// The carrier-phase wind-up, in cycles: the phase added by the rotation of the satellite's antenna relative to the
+/// receiver's (Wu et al. 1993). Subtract that many wavelengths from the measured phase.
 ///
-/// `receiver_enu_from_ecef` gives the receiver's antenna, whose dipoles point north and west, and `sight`
-/// the ECEF unit vector from receiver to satellite. With the result of the epoch before as `previous` the
-/// phase is continuous over whole turns; without, it lies within half a cycle of zero. Where it is not
-/// defined (a satellite at the antenna's nadir, numbers that are not finite) it stays at `previous`, or
-/// zero.
+/// `receiver_enu_from_ecef` gives the orientation of the receiver's antenna, whose dipoles point north and west, and
+/// `sight` is the ECEF unit vector from receiver to satellite. With the result of the preceding epoch as `previous` the
+/// phase is continuous over whole turns; without it, it lies within half a cycle of zero. Where it is undefined (a
+/// satellite at the antenna's nadir, numbers that are not finite) it stays at `previous`, or zero.
 pub fn wind_up(
     axes: &BodyAxes,
     receiver_enu_from_ecef: &Matrix3<f64>,
@@ -33,7 +32,7 @@ pub fn wind_up(
     fraction + turns
 }
 
-/// The part of a dipole across the ray.
+/// The component of a dipole perpendicular to the ray.
 fn dipole(axis: &Vector3<f64>, ray: &Vector3<f64>) -> Vector3<f64> {
     axis - ray * ray.dot(axis)
 }
@@ -72,9 +71,9 @@ mod tests {
         assert!((later - 2.9).abs() <= 0.5);
     }
 
-    /// The field of a right-handed wave turns clockwise seen from its source. A receiver below the satellite
-    /// that turns with it, from north over east, sees each cycle later: its phase grows, as with the range. So
-    /// it does if the satellite turns in the opposite sense.
+    /// The field of a right-handed wave turns clockwise seen from its source. A receiver below the satellite that turns
+    /// with it, from north over east, sees each cycle later: its phase grows, as with the range. The same happens if
+    /// the satellite turns in the opposite sense.
     #[test]
     fn turning_antennas_count_cycles() {
         let position = Vector3::x() * 26e6;

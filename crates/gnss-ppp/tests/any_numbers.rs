@@ -1,4 +1,4 @@
-//! No number makes the model panic, and none that is finite and of this world makes it not finite.
+//! Property tests: no number makes the model panic, and no finite and realistic one gives a result that is not finite.
 
 use kestirim_gnss_ppp::{
     Bodies, BodyAxes, Direction, Geodetic, GpsTime, OceanLoading, Pattern, Troposphere,
@@ -12,14 +12,14 @@ fn vector() -> impl Strategy<Value = Vector3<f64>> {
     [any::<f64>(), any::<f64>(), any::<f64>()].prop_map(Vector3::from)
 }
 
-/// Of a satellite or a receiver.
+/// A position of a satellite or a receiver.
 fn position() -> impl Strategy<Value = Vector3<f64>> {
     ([-1.0..1.0, -1.0..1.0, -1.0..1.0], 6.3e6..3e7)
         .prop_filter("a direction", |(direction, _)| Vector3::from(*direction).norm() > 1e-3)
         .prop_map(|(direction, radius)| Vector3::from(direction).normalize() * radius)
 }
 
-/// Everything the crate computes, as numbers.
+/// Everything that the crate computes, as numbers.
 fn everything(
     time: GpsTime,
     offset: f64,

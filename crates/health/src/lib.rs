@@ -9,23 +9,23 @@ use core::fmt;
 
 pub use reason::Reason;
 
-/// How far an estimate can be relied upon.
+/// Degree to which an estimate can be relied upon.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(::serde::Serialize, ::serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum State {
-    /// As its standard deviation says.
+    /// The estimate is as good as its standard deviation says.
     #[default]
     Good,
-    /// Worse than with better data; what is said of its accuracy still holds, more or less.
+    /// The estimate is worse than with better data; its stated accuracy still holds approximately.
     Degraded,
-    /// It may be wrong by far more than anything says.
+    /// The estimate may be wrong by far more than its stated accuracy.
     Bad,
 }
 
 impl State {
-    /// The word for it.
+    /// The word for the state.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Good => "good",
@@ -41,16 +41,16 @@ impl fmt::Display for State {
     }
 }
 
-/// Whether an estimate can be relied upon, and all reasons why not.
+/// Whether an estimate can be relied upon, and all reasons why it cannot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Health {
-    /// A bit a reason.
+    /// One bit for each reason.
     bits: u16,
 }
 
 impl Health {
-    /// Nothing speaks against it.
+    /// A good estimate, with no reason against it.
     pub const GOOD: Self = Self { bits: 0 };
 
     /// Adds a reason.
@@ -58,19 +58,19 @@ impl Health {
         self.bits |= reason.bit();
     }
 
-    /// With this reason, if `is_so`.
+    /// The same health with this reason added if `is_so`.
     #[must_use]
     pub const fn with(self, reason: Reason, is_so: bool) -> Self {
         Self { bits: self.bits | if is_so { reason.bit() } else { 0 } }
     }
 
-    /// With the reasons of both.
+    /// The health with the reasons of both.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
         Self { bits: self.bits | other.bits }
     }
 
-    /// Whether this is among the reasons.
+    /// Whether `reason` is among the reasons.
     pub const fn has(self, reason: Reason) -> bool {
         self.bits & reason.bit() != 0
     }
@@ -98,7 +98,7 @@ impl FromIterator<Reason> for Health {
     }
 }
 
-/// `good`, or the state and its reasons: `bad: dropout, innovations`.
+/// Writes `good`, or the state and its reasons: `bad: dropout, innovations`.
 impl fmt::Display for Health {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.state().word())?;

@@ -2,27 +2,27 @@ use core::fmt;
 
 use crate::State;
 
-/// Why an estimate is not good.
-// The order is part of what is stored: a new one goes to the end, here and in `ALL`.
+/// Reason why an estimate is not good.
+// The order is part of the stored form: add a new one at the end, here and in `ALL`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(::serde::Serialize, ::serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Reason {
-    /// A sensor was at its end.
+    /// A sensor reached the end of its range.
     Saturated,
-    /// A sensor repeated itself.
+    /// A sensor keeps repeating the same value.
     Stuck,
-    /// Data are missing, or too few.
+    /// Data are missing, or there are too few.
     Dropout,
-    /// More measurements than usual contradict the estimate and were left out.
+    /// More measurements than usual contradict the estimate and were rejected.
     Rejected,
-    /// What the estimate needs cannot be seen in the data.
+    /// A quantity that the estimate needs is not observable in the data.
     NotObservable,
-    /// Times run too fast or too slow, some data are later than others, or products belong to another time.
+    /// Time stamps run too fast or too slow, some data are later than others, or products belong to another time.
     Time,
-    /// Data seem to be in another unit, or of another sign.
+    /// Data seem to be in another unit or to have another sign.
     Units,
     /// Axes seem to be swapped or mirrored.
     Axes,
@@ -30,16 +30,16 @@ pub enum Reason {
     Geometry,
     /// One anchor, or two that seem swapped, contradict the others.
     Anchor,
-    /// The height that was said contradicts the measurements.
+    /// The height that was given contradicts the measurements.
     Height,
-    /// What is left of the measurements is beyond its bound.
+    /// The innovations of the measurements exceed their bound.
     Innovations,
-    /// The estimate left the range of its numbers.
+    /// The estimate left the range of its number type.
     Range,
 }
 
 impl Reason {
-    /// All of them.
+    /// All reasons, in the order of their declaration.
     pub const ALL: [Self; 13] = [
         Self::Saturated,
         Self::Stuck,
@@ -56,7 +56,7 @@ impl Reason {
         Self::Range,
     ];
 
-    /// How far an estimate can be relied upon for all that.
+    /// The degree to which an estimate can be relied upon in spite of this reason.
     pub const fn state(self) -> State {
         match self {
             Self::Saturated
@@ -75,7 +75,7 @@ impl Reason {
         }
     }
 
-    /// As people read it.
+    /// The reason in words for people.
     pub const fn words(self) -> &'static str {
         match self {
             Self::Saturated => "saturated",

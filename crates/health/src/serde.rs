@@ -1,4 +1,4 @@
-//! For people an object with words, for machines the bits.
+//! Serialisation of [`Health`]: an object with words in human-readable formats, the bits in others.
 
 use ::serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
 use ::serde::ser::{Serialize, SerializeStruct, Serializer};
@@ -25,12 +25,12 @@ impl<'de> Deserialize<'de> for Health {
         }
         let bits = u16::deserialize(deserializer)?;
         let health: Self = Reason::ALL.into_iter().filter(|it| bits & it.bit() != 0).collect();
-        // What was stored by a later version is not half read.
+        // Reasons stored by a later version are refused, not partly read.
         if health.bits == bits { Ok(health) } else { Err(D::Error::custom("an unknown reason")) }
     }
 }
 
-/// What people read; the state follows from the reasons.
+/// The human-readable form; the state follows from the reasons.
 #[derive(::serde::Deserialize)]
 struct Object {
     reasons: Reasons,

@@ -1,14 +1,15 @@
-//! The unit of times that nothing names: from their spacing.
+//! Infers the unit of a time column that names none from the spacing of its times.
 
 use std::ops::RangeInclusive;
 
 use crate::error::Error;
 use crate::unit::{Quantity, Unit};
 
-/// Enough to tell the usual step.
+/// The number of times that are looked at to find the usual step.
 const SAMPLE: usize = 4000;
 
-/// The unit of times whose usual step is one of these, in s: seconds if they may be, or else the one unit that fits.
+/// The unit in which the usual step of the times lies in the range `usual`, s: seconds if they fit, or else the one
+/// unit that fits.
 ///
 /// # Errors
 /// [`Error::Undecided`] if no unit fits, or several that are shorter than a second.
@@ -40,12 +41,13 @@ pub fn unit_of_times(
     }
 }
 
-/// Ranges may come so slowly, s; and no log of them is as short as this, s.
+/// The largest mean step of a log of ranges, s, and the duration, s, that every such log exceeds.
 const SLOWEST: f64 = 60.0;
 const SHORTEST_LOG: f64 = 10.0;
 
-/// The unit of the times of ranges, as [`unit_of_times`] finds it; but seconds, if the log would be over in no time otherwise, and times
-/// have decimals.
+/// The unit of the times of ranges, as [`unit_of_times`] finds it.
+///
+/// Seconds are taken instead if the log would otherwise be implausibly short and its times have decimals.
 ///
 /// # Errors
 /// As [`unit_of_times`].
@@ -77,7 +79,7 @@ mod tests {
         }
         assert_eq!(unit_of_times(times(100.0), 2e-2..=60.0).unwrap().name, "ms");
         assert_eq!(unit_of_times([1.0], 2e-3..=2.0).unwrap().name, "s");
-        // Slow ranges: 100 of them are no log of half a second, but 4000 are one of 18 s.
+        // Slow ranges: 100 of them do not make a log of half a second, but 4000 make one of 18 s.
         let slow = |step: f64, count: i32| {
             let times = (0..count).map(|i| 17.5 + f64::from(i) * step);
             unit_of_range_times(times, 2e-3..=2.0).unwrap().name
@@ -86,7 +88,7 @@ mod tests {
         assert_eq!([slow(0.05, 100), slow(50.02, 4000)], ["s", "ms"]);
         let whole = (0..100).map(|i| f64::from(5 * i));
         assert_eq!(unit_of_range_times(whole, 2e-3..=2.0).unwrap().name, "ms");
-        // Nothing fits; and a thousand may be a second in ms or a millisecond in µs.
+        // No unit fits; a step of a thousand may be a second in ms or a millisecond in µs.
         for (step, shortest) in [(1e-7, 2e-3), (1e3, 5e-4)] {
             let error = unit_of_times(times(step), shortest..=2.0).unwrap_err().to_string();
             assert!(error.contains("--units t="), "{error}");

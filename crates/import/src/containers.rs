@@ -1,9 +1,9 @@
-//! Files that are no table of text, or hold several: recognised by their first bytes and decoded into a table of named
-//! columns with known units, which then goes the same way as a text.
+//! Binary and archive files, which are not a table of text or hold several: they are recognised by their first bytes
+//! and decoded into a table of named columns with known units, which is then processed like a text.
 //!
-//! Every reader goes through a file once, from start to end, and takes no length from it that goes beyond what remains. A
-//! stretch that cannot be read is skipped and counted as the samples that it would have held, by how dense they are in the
-//! rest of the file.
+//! Every reader goes through a file once, from start to end, and trusts no length in it beyond what remains. A stretch
+//! that cannot be read is skipped and counted as the samples that it would have held, by their density in the rest of
+//! the file.
 
 mod ardupilot;
 mod ardupilot_text;
@@ -58,26 +58,26 @@ use crate::options::Options;
 use crate::table::Table;
 use crate::text::Text;
 
-/// A log as a table, and what is known of it before anybody looks at its columns.
+/// A log as a table, with what is known of it before its columns are examined.
 pub(crate) struct Opened<'a> {
     pub(crate) table: Table,
-    /// What a complaint may quote, if the table was read from one text.
+    /// The text that error messages may quote, if the table was read from a single text.
     pub(crate) text: Option<Text<'a>>,
-    /// What wrote it, if that is known.
+    /// The format, if it is known.
     pub(crate) format: Option<Format>,
-    /// What the format's reader tells.
+    /// The notes of the format's reader.
     pub(crate) notes: Vec<String>,
 }
 
-/// What unpacks to more bytes in all is refused: 1 GiB.
+/// The largest total size of unpacked data, bytes: 1 GiB.
 const LARGEST: u64 = 1 << 30;
 
-/// A file that holds too much.
+/// The error for a file that unpacks to too much.
 fn too_large() -> Error {
     Error::log("expected a file that unpacks to at most 1 GiB, found a larger one")
 }
 
-/// Opens a log, whatever it is.
+/// Opens a log of any format.
 ///
 /// # Errors
 /// What was expected and what was found.
@@ -107,7 +107,7 @@ pub(crate) fn open<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>,
     Ok(Opened { table, text: None, format: Some(format), notes })
 }
 
-/// What holds ranges in a bag of ROS 1 or an MCAP file; none if the file is another.
+/// The topics that hold ranges in a bag of ROS 1 or an MCAP file; `None` if the file is neither.
 ///
 /// # Errors
 /// If it cannot be read, or unpacks to too much.
@@ -125,7 +125,7 @@ pub(crate) fn ranges<'o>(
     read.map(Some)
 }
 
-/// What holds levels in a bag of ROS 1 or an MCAP file; none if the file is another.
+/// The topics that hold levels in a bag of ROS 1 or an MCAP file; `None` if the file is neither.
 ///
 /// # Errors
 /// If it cannot be read, or unpacks to too much.
@@ -143,10 +143,10 @@ pub(crate) fn levels<'o>(
     read.map(Some)
 }
 
-/// What a reader makes of a file.
+/// A file as decoded by its reader.
 struct Decoded {
     table: Table,
-    /// What it tells beside the units.
+    /// The reader's notes, other than on units.
     notes: Vec<String>,
 }
 
@@ -163,7 +163,7 @@ fn open_text<'a>(bytes: &'a [u8], options: &Options) -> Result<Opened<'a>, Error
     Ok(Opened { table, text: Some(text), format, notes: Vec::new() })
 }
 
-/// Refuses to choose where there is no choice.
+/// Refuses the option `--topic` for a file that leaves nothing to choose.
 fn refuse_topic(options: &Options, found: &str) -> Result<(), Error> {
     if options.topic.is_none() {
         return Ok(());

@@ -1,34 +1,34 @@
-//! Lines or records of a log that cannot be samples: skipped, counted and told.
+//! Damaged lines or records of a log: they are skipped, counted and reported.
 
 use crate::error::{Complaint, Error};
 use crate::part::Part;
 
-/// The share of a log that may be skipped. A hundredth is more than a logger loses on a good day, and less than the share
-/// of a wrongly understood log whose lines seem damaged.
+/// The share of a log that may be skipped: 0.01 is more than a logger usually loses, and less than the share of a
+/// misunderstood log whose lines seem damaged.
 const SHARE: f64 = 0.01;
-/// How many lines may be skipped of a log however short: one accident tears up to three lines (its end, a line beside it,
-/// and what joins them).
+/// The number of lines that may be skipped of any log, however short: one accident tears up to three lines (its end, a
+/// line beside it, and what joins them).
 const FEWEST: usize = 3;
-/// How many lines are named of each kind.
+/// The number of lines named for each kind of fault.
 const NAMED: usize = 3;
 
 /// What is wrong with a line or a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Fault {
-    /// The last one ends before its last field.
+    /// The log ends before the last field of its last line or record.
     Cut,
     /// A line has more or fewer fields than the header, or than the other lines; a record is not of the file's format.
     Torn,
-    /// A field of a column that is needed holds no number.
+    /// A required column holds no number.
     Foreign,
-    /// It is the same as the one before.
+    /// The line or record repeats the one before it.
     Doubled,
-    /// Its time is before that of one before it, or far after that of all that follow.
+    /// Its time precedes that of an earlier one, or lies far beyond those of all that follow.
     OutOfOrder,
-    /// No sensor can have said it.
+    /// Its values exceed what any sensor can measure.
     OutOfRange,
-    /// A reader cannot use it.
+    /// The line or record is well-formed, but the reader cannot use it.
     Unusable,
 }
 
@@ -47,16 +47,16 @@ impl Fault {
     }
 }
 
-/// How many lines or records have a [`Fault`], and the first of them.
+/// The number of lines or records with a certain [`Fault`], and the first few of them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Loss {
-    /// What they are.
+    /// Whether lines or records are counted.
     pub part: Part,
-    /// What is wrong with them.
+    /// What is wrong with these lines or records.
     pub fault: Fault,
-    /// How many there are.
+    /// The number of lines or records with this fault.
     pub count: usize,
-    /// Up to three of them, in the order of the log.
+    /// The numbers of up to three of them, in the order of the log.
     pub lines: Vec<usize>,
 }
 
@@ -69,32 +69,32 @@ impl std::fmt::Display for Loss {
     }
 }
 
-/// What was skipped of a log.
+/// Everything that was skipped of a log.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Damage {
-    /// A kind of fault each.
+    /// One entry for each kind of fault.
     pub losses: Vec<Loss>,
-    /// Whether the last line has no line break: its last number may have lost digits.
+    /// Whether the last line lacks its line break, so that its last number may have lost digits.
     pub end_may_be_cut: bool,
     pub(crate) first: Option<Complaint>,
-    /// What the log is made of.
+    /// What the log consists of: lines or records.
     pub(crate) part: Part,
 }
 
 impl Damage {
-    /// None yet.
+    /// No damage yet, to be counted in `part`s.
     pub(crate) fn of(part: Part) -> Self {
         Self { part, ..Self::default() }
     }
 
-    /// The same, of another part.
+    /// The same damage, attributed to another kind of part.
     pub(crate) fn named(mut self, part: Part) -> Self {
         self.losses.iter_mut().for_each(|loss| loss.part = part);
         self.first.iter_mut().for_each(|first| first.part = part);
         Self { part, end_may_be_cut: false, ..self }
     }
 
-    /// That of several texts together; what is added then is of the first one.
+    /// Joins the damage of several texts; damage that is added later counts as the first text's.
     pub(crate) fn joined<const N: usize>(parts: [Self; N]) -> Self {
         let mut all = Self::of(parts.first().map_or(Part::Line, |first| first.part));
         for part in parts {
@@ -104,29 +104,29 @@ impl Damage {
         all
     }
 
-    /// How many lines or records were skipped.
+    /// The total number of lines or records that were skipped.
     pub fn count(&self) -> usize {
         self.losses.iter().map(|loss| loss.count).sum()
     }
 
-    /// A sentence for each kind of fault, with the numbers of lines or records.
+    /// One sentence for each kind of fault, with the numbers of the lines or records.
     pub fn sentences(&self) -> Vec<String> {
         let cut = "the log does not end with a line break: its end may be cut";
         let cut = self.end_may_be_cut.then(|| cut.to_owned());
         self.losses.iter().map(Loss::to_string).chain(cut).collect()
     }
 
-    /// How many lines may be skipped of a log of so many rows.
+    /// The number of lines that may be skipped of a log with `rows` rows.
     pub(crate) fn allowed(rows: usize) -> usize {
         FEWEST.max((rows as f64 * SHARE) as usize)
     }
 
-    /// Counts a line or record; the complaint is put in words if it is the first one.
+    /// Counts one line or record; `problem` is called only for the first one.
     pub fn add(&mut self, fault: Fault, line: usize, problem: impl FnOnce() -> String) {
         self.add_some(fault, line, 1, problem);
     }
 
-    /// Counts as many as were lost at one place.
+    /// Counts `count` lines or records that were lost at one place.
     pub(crate) fn add_some(
         &mut self,
         fault: Fault,
@@ -150,14 +150,15 @@ impl Damage {
         }
     }
 
-    /// Accepts what may be skipped of so many rows; nothing if `strict`.
+    /// Accepts the damage if few enough of the rows are affected; if `strict`, only if there is none.
     ///
     /// # Errors
-    /// [`Error::Line`] or [`Error::Part`] at the first damaged one if `strict`; [`Error::Damaged`] if there are too many.
+    /// [`Error::Line`] or [`Error::Part`] at the first damaged one if `strict`; [`Error::Damaged`] if there are too
+    /// many.
     pub fn accept(&self, rows: usize, strict: bool) -> Result<(), Error> {
         let Some(first) = &self.first else { return Ok(()) };
         let (allowed, found) = (Self::allowed(rows), self.count());
-        // Of a log of three lines not all three may be skipped.
+        // A log of three lines must not lose all three.
         if strict || rows <= found {
             return Err(first.clone().into());
         }

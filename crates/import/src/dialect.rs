@@ -1,4 +1,4 @@
-//! How a table is written: what stands between the columns, and how its numbers look.
+//! How a table is written: its column separator and its decimal sign.
 
 use std::borrow::Cow;
 
@@ -6,30 +6,30 @@ use crate::moment;
 use crate::number;
 use crate::text::Text;
 
-/// How many lines are looked at to tell the dialect.
+/// The number of lines that are looked at to detect the dialect.
 const SAMPLE: usize = 400;
-/// No log has more columns; what has is not taken apart.
+/// The largest number of fields of a line; longer lines are not split any further.
 const MOST_FIELDS: usize = 1000;
 
-/// What stands between the columns.
+/// The separator between columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Separator {
     /// `,`
     Comma,
     /// `;`
     Semicolon,
-    /// A tabulator.
+    /// A tab.
     Tab,
-    /// Blanks and tabulators, any number of them.
+    /// Any number of blanks and tabs.
     Blanks,
 }
 
 /// How a table is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Dialect {
-    /// What stands between the columns.
+    /// The separator between columns.
     pub separator: Separator,
-    /// Whether `0,5` is a half; otherwise `0.5` is.
+    /// Whether the decimal sign is a comma (`0,5`) instead of a point (`0.5`).
     pub decimal_comma: bool,
 }
 
@@ -47,7 +47,7 @@ impl std::fmt::Display for Dialect {
 }
 
 impl Dialect {
-    /// In the order in which they are preferred where two read as much.
+    /// All dialects, in order of preference where two of them read equally many numbers.
     const ALL: [Self; 8] = [
         Self::new(Separator::Comma, false),
         Self::new(Separator::Semicolon, false),
@@ -59,13 +59,13 @@ impl Dialect {
         Self::new(Separator::Blanks, true),
     ];
 
-    /// The dialect of a separator.
+    /// A dialect with this separator and this decimal sign.
     pub const fn new(separator: Separator, decimal_comma: bool) -> Self {
         Self { separator, decimal_comma }
     }
 
-    /// The dialect in which most numbers of the first lines can be read, and the number of columns; none if there are no
-    /// rows of numbers.
+    /// The dialect in which most numbers of the first lines can be read, and the number of columns; `None` if there are
+    /// no rows of numbers.
     pub fn find(text: &Text<'_>) -> Option<(Self, usize)> {
         let lines: Vec<_> = text.lines().take(SAMPLE).map(|line| line.bytes).collect();
         let mut best = None;
@@ -78,9 +78,9 @@ impl Dialect {
         best.map(|(_, dialect, width)| (dialect, width))
     }
 
-    /// How many numbers the rows of the most frequent width hold, and that width.
+    /// The number of numbers in the rows of the most frequent width, and that width.
     fn numbers(self, lines: &[&[u8]]) -> (usize, usize) {
-        // Width, rows and numbers.
+        // Width, number of rows, number of numbers.
         let mut widths: Vec<[usize; 3]> = Vec::new();
         for line in lines.iter().filter(|line| !self.is_comment(line)) {
             let (width, numbers) = self.row(line);
@@ -96,12 +96,12 @@ impl Dialect {
         most.map_or((0, 0), |[width, _, numbers]| (numbers, width))
     }
 
-    /// How many fields a line has, and how many of them are numbers or times.
+    /// The number of fields of a line, and how many of them are numbers or times.
     pub(crate) fn row(self, line: &[u8]) -> (usize, usize) {
         let fields = self.fields(line);
         let is_value =
             |field: &&Cow<'_, [u8]>| self.number(field).is_some() || moment::read(field).is_some();
-        // A separator may end each line.
+        // A line may end with a separator.
         let ends = fields.len() > 2 && fields.last().is_some_and(|field| field.is_empty());
         (fields.len() - usize::from(ends), fields.iter().filter(is_value).count())
     }
@@ -115,7 +115,7 @@ impl Dialect {
         }
     }
 
-    /// The bytes that stand between fields, of which most dialects have one.
+    /// The bytes that separate fields; most dialects have only one, which is then given twice.
     const fn separators(self) -> [u8; 2] {
         match self.separator {
             Separator::Comma => [b','; 2],
@@ -125,15 +125,16 @@ impl Dialect {
         }
     }
 
-    /// Whether a byte stands between fields.
+    /// Whether a byte separates fields.
     pub(crate) fn separates(self, byte: u8) -> bool {
         let [one, other] = self.separators();
         byte == one || byte == other
     }
 
-    /// The fields of a line, without surrounding blanks and quotation marks; of more than 1000 the first ones.
+    /// The fields of a line, without surrounding blanks and quotation marks; only the first ones if there are more than
+    /// 1000.
     pub fn fields(self, line: &[u8]) -> Vec<Cow<'_, [u8]>> {
-        // Most lines have no more: a list that grows is most of the work.
+        // Most lines have at most eight fields: growing the list would be most of the work.
         let mut fields = Vec::with_capacity(8);
         let mut rest = line.trim_ascii();
         loop {
@@ -153,7 +154,7 @@ impl Dialect {
         }
     }
 
-    /// The first field, and where its separator stands.
+    /// The first field, and the position of its separator.
     fn field(self, rest: &[u8]) -> (Cow<'_, [u8]>, usize) {
         let blanks = rest.iter().take_while(|&&b| b == b' ').count();
         if (self.separator != Separator::Blanks || blanks == 0)
@@ -167,11 +168,11 @@ impl Dialect {
         (Cow::Borrowed(rest[..end].trim_ascii()), end)
     }
 
-    /// What a field holds, if it is a number; it may be infinite or not a number.
+    /// The value of a field, if it is a number; it may be infinite or NaN.
     pub fn number(self, field: &[u8]) -> Option<f64> {
         const LONGEST: usize = 64;
         if !self.decimal_comma || !field.contains(&b',') {
-            // A point beside decimal commas groups thousands, or is one of two ways in one table.
+            // A point beside decimal commas groups thousands, or the table mixes two notations.
             let plain = !self.decimal_comma || !field.contains(&b'.');
             return number::whole(field).filter(|_| plain);
         }
@@ -185,7 +186,7 @@ impl Dialect {
     }
 }
 
-/// What stands between quotation marks at the beginning, `""` meaning `"`, and the length with the marks.
+/// The text in quotation marks at the beginning, with `""` for `"`, and its length including the marks.
 fn quoted_field(text: &[u8]) -> Option<(Cow<'_, [u8]>, usize)> {
     let inside = text.strip_prefix(b"\"")?;
     let mut field = Vec::new();

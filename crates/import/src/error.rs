@@ -1,4 +1,4 @@
-//! What is wrong with a log, in one sentence on one line.
+//! Errors of reading a log, each one sentence on one line.
 
 use crate::part::Part;
 
@@ -10,7 +10,7 @@ pub enum Error {
     /// The log as a whole is not what it should be.
     #[error("{problem}")]
     Log {
-        /// What was expected, and what was found.
+        /// What was expected and what was found.
         problem: String,
     },
     /// A line is not what it should be.
@@ -18,17 +18,17 @@ pub enum Error {
     Line {
         /// The line, from 1.
         line: usize,
-        /// What was expected, and what was found.
+        /// What was expected and what was found.
         problem: String,
     },
     /// A record, or a line of one of several texts, is not what it should be.
     #[error("{}: {problem}", part.place(&[*number], false))]
     Part {
-        /// What it is.
+        /// What it is: a record, or a line of a certain text.
         part: Part,
-        /// Its number, from 1.
+        /// The number of the record or line, from 1.
         number: usize,
-        /// What was expected, and what was found.
+        /// What was expected and what was found.
         problem: String,
     },
     /// More of the log is damaged than may be skipped.
@@ -37,39 +37,39 @@ pub enum Error {
         first.part.noun(2)
     )]
     Damaged {
-        /// How many lines or records may be skipped.
+        /// The number of lines or records that may be skipped.
         allowed: usize,
-        /// How many should be samples.
+        /// The number of lines or records that should be samples.
         rows: usize,
-        /// How many are damaged.
+        /// The number of damaged lines or records.
         found: usize,
-        /// The first of them, and what is wrong with it.
+        /// The first damaged one, and what is wrong with it.
         first: Complaint,
     },
-    /// The log does not tell what is needed, or tells two things that cannot both be true.
+    /// The log does not say what is needed, or contradicts itself.
     #[error("{problem}; {option} decides")]
     Undecided {
-        /// What was expected, and what was found.
+        /// What was expected and what was found.
         problem: String,
-        /// The option that says what the log does not, such as `--units gyro=deg/s`.
+        /// The option that settles it, such as `--units gyro=deg/s`.
         option: String,
     },
-    /// An option is not of the form it should have.
+    /// An option is malformed.
     #[error("{problem}")]
     Options {
-        /// What was expected, and what was found.
+        /// What was expected and what was found.
         problem: String,
     },
 }
 
-/// What is wrong with a line or a record.
+/// A line or record, and what is wrong with it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Complaint {
-    /// Which of the two.
+    /// Whether it is a line or a record.
     pub part: Part,
-    /// Its number, from 1.
+    /// The number of the line or record, from 1.
     pub line: usize,
-    /// What was expected, and what was found.
+    /// What was expected and what was found.
     pub problem: String,
 }
 
@@ -106,7 +106,7 @@ impl Error {
     }
 }
 
-/// A piece of a log in quotation marks, on one line and short.
+/// An excerpt of a log in quotation marks, on one line and shortened.
 pub(crate) fn quoted(text: &str) -> String {
     const LONGEST: usize = 24;
     let text = text.trim();
@@ -118,7 +118,7 @@ pub(crate) fn quoted(text: &str) -> String {
     format!("\"{}{dots}\"", start.escape_debug())
 }
 
-/// Names in a log, on one line and not too many; `none` of none.
+/// A list of names from a log, on one line and shortened; `none` if it is empty.
 pub(crate) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     const MOST: usize = 12;
     let mut list = String::new();

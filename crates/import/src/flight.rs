@@ -1,21 +1,22 @@
-//! Flights of fixed-wing aircraft as autopilots log them: angle of attack, pitch rate, airspeed and pitch angle, with the
-//! commands to elevator and throttle. A table of text is a [`crate::NamedTable`].
+//! Flights of fixed-wing aircraft as autopilots log them: angle of attack, pitch rate, airspeed and pitch angle, with
+//! the commands to elevator and throttle. A table of text is a [`crate::NamedTable`].
 //!
 //! | | `ArduPilot` `.bin`, `.log` (`AP_Logger/LogStructure.h`, `ArduPlane/Log.cpp`) | PX4 `.ulg` (its uORB messages) |
 //! |---|---|---|
-//! | `alpha` | `AOA.AOA`, °: what the autopilot reckons from airspeed and wind | none |
+//! | `alpha` | `AOA.AOA`, °: what the autopilot computes from airspeed and wind | none |
 //! | `q` | `IMU.GyrY`, rad/s | `vehicle_angular_velocity.xyz[1]`, else `sensor_combined.gyro_rad[1]`, rad/s |
 //! | `V` | `ARSP.Airspeed`, m/s: calibrated, not true airspeed | `airspeed_validated.true_airspeed_m_s`, else `airspeed.true_airspeed_m_s` |
 //! | `theta` | `ATT.Pitch`, ° | the pitch of the quaternion `vehicle_attitude.q` |
 //! | `delta_e` | `AETR.Elev`, −4500 to 4500 | `vehicle_torque_setpoint.xyz[1]`, else `actuator_controls_0.control[1]`, −1 to 1 |
 //! | `delta_t` | `AETR.Thr`, % | `vehicle_thrust_setpoint.xyz[0]`, else `actuator_controls_0.control[3]`, 0 to 1 |
 //!
-//! Both count rates and angles nose up, as the model does, and an elevator's command positive nose up, where an elevator's
-//! deflection is negative. What a full command deflects stands in no log: `--units delta_e=-0.0056deg` says it, for 25° of
-//! 4500. `--columns alpha=NAME.FIELD` takes another field; the unit of that has to be said, too.
+//! Both count rates and angles nose up, as the model does, and an elevator's command positive nose up, where an
+//! elevator's deflection is negative. No log gives the deflection for a full command: `--units delta_e=-0.0056deg`
+//! states it, for 25° of 4500. `--columns alpha=NAME.FIELD` takes another field; its unit must be given, too.
 //!
 //! Each sample of the pitch rate is a row (of the pitch angle if there is none, then of the airspeed). A measurement of
-//! another kind stands in the row nearest in time and in no other; commands hold until the next one, for a second at most.
+//! another kind stands in the row nearest in time and in no other; commands hold until the next one, for a second at
+//! most.
 
 mod order;
 mod rows;
@@ -28,31 +29,31 @@ use crate::damage::{Damage, Fault};
 use crate::error::{Error, listed};
 use crate::options::Options;
 
-/// A moment of a flight.
+/// The measurements and commands at one time of a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// Time of the log's clock, µs.
+    /// Time on the log's clock, µs.
     pub time_us: i64,
-    /// α, q, V, θ in rad, rad/s, m/s, rad, as far as they were measured at that time.
+    /// α, q, V, θ in rad, rad/s, m/s, rad, each if it was measured at that time.
     pub state: [Option<f64>; 4],
-    /// Deflection of the elevator, rad, and throttle, 0 to 1.
+    /// The elevator deflection, rad, and the throttle, 0 to 1.
     pub input: [f64; 2],
 }
 
-/// A flight.
+/// A flight as read from an autopilot's log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flight {
-    /// In the order of their times, which differ.
+    /// The rows in order of strictly increasing time.
     pub rows: Vec<Row>,
-    /// Which of α, q, V, θ the log has at all.
+    /// Which of α, q, V, θ the log holds at all.
     pub has: [bool; 4],
-    /// What was recognised, a sentence each.
+    /// What was recognised, one sentence each.
     pub conclusions: Vec<String>,
     /// What was skipped.
     pub damage: Damage,
 }
 
-/// Reads a flight; none if the file is of no autopilot.
+/// Reads a flight; `None` if the file is not an autopilot's log.
 ///
 /// # Errors
 /// What was expected and what was found, and which option decides where the log does not tell.
@@ -118,7 +119,7 @@ fn flight(family: Family, signals: Signals, options: &Options) -> Result<Flight,
     if rows.is_empty() {
         return Err(Error::log("expected measurements with commands before them, found none"));
     }
-    // A stretch that was lost counts as the rows that it would have held.
+    // A lost stretch counts as the rows that it would have held.
     let damage = Damage::joined([losses.damage(part, rows.len()), disorder]);
     damage.accept(rows.len() + damage.count(), options.strict)?;
     Ok(Flight { rows, has, conclusions, damage })

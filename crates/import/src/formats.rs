@@ -1,5 +1,5 @@
-//! Logs of devices and programs that are known by name: what their columns hold is written down somewhere, so it need not
-//! be found in the data.
+//! Logs of devices and programs that are known by name: the meaning of their columns is documented, so it need not be
+//! inferred from the data.
 
 mod openlog_artemis;
 mod openshoe;
@@ -14,11 +14,12 @@ use crate::containers;
 use crate::error::{Error, quoted};
 use crate::table::Table;
 
-/// A device or program that writes logs.
+/// A device or program that writes logs in a known format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Format {
-    /// Text of the 9DoF Razor and its descendants: blanks between ms, 3 × g, 3 × °/s.
+    /// Text of the 9DoF Razor and its descendants: time in ms, 3 accelerations in g, 3 rates in °/s, separated by
+    /// blanks.
     Razor,
     /// CSV of x-io's NGIMU and x-IMU3.
     Xio,
@@ -40,31 +41,33 @@ pub enum Format {
     SensorLogger,
     /// Text of `OpenShoe`'s first prototype.
     OpenShoe,
-    /// Text of `OpenShoe`'s module, whose samples are only counted.
+    /// Text of `OpenShoe`'s module, with numbered samples instead of times.
     OpenShoeCounted,
     /// Packets of `OpenShoe`'s module.
     OpenShoeMimu,
 }
 
-/// What is known of a format.
+/// The description of a format.
 #[derive(Debug)]
 pub(crate) struct Description {
     pub(crate) format: Format,
-    /// As in the option.
+    /// The name as the option `--format` takes it.
     pub(crate) name: &'static str,
     pub(crate) title: &'static str,
-    /// Whether a table of text is of this format; none if the first bytes of a file tell, and not its columns.
+    /// Whether a table of text is of this format; `None` if the format is recognised by a file's first bytes, not by
+    /// its columns.
     pub(crate) is_it: Option<fn(&Table) -> bool>,
-    /// Names, or numbers without a header, of t, ax, ay, az, gx, gy, gz; the first of several names of time that is there.
+    /// The names of the columns of t, ax, ay, az, gx, gy, gz, or their numbers, from 1, if there is no header. Of
+    /// several names of time the first that is present is taken.
     pub(crate) time: &'static [(&'static str, &'static str)],
     pub(crate) sensors: [&'static str; 6],
     pub(crate) acceleration: &'static str,
     pub(crate) rate: &'static str,
-    /// Whether the data may tell otherwise, as nothing but the shape of the table shows the format.
+    /// Whether the data may overrule the format, because it is recognised by the shape of the table alone.
     pub(crate) is_a_guess: bool,
 }
 
-/// The shape alone shows the last one.
+/// All formats; the last one is recognised by its shape alone.
 const ALL: [&Description; 13] = [
     &xio::XIO,
     &xsens::XSENS,
@@ -82,23 +85,23 @@ const ALL: [&Description; 13] = [
 ];
 
 impl Format {
-    /// The name in the option `--format`.
+    /// The name as the option `--format` takes it.
     pub fn name(self) -> &'static str {
         self.description().name
     }
 
-    /// The names of all formats, as in the option `--format`.
+    /// The names of all formats, as the option `--format` takes them.
     pub fn names() -> impl Iterator<Item = &'static str> {
         ALL.iter().map(|known| known.name)
     }
 
-    /// The format of a table, if it is one of these.
+    /// The format of a table, if it is recognised.
     pub fn of(table: &Table) -> Option<Self> {
         let is_it = |known: &&&Description| known.is_it.is_some_and(|is_it| is_it(table));
         ALL.iter().find(is_it).map(|known| known.format)
     }
 
-    /// Whether a file's first bytes tell this format, and not the columns of a table of text.
+    /// Whether the format is recognised by a file's first bytes, not by the columns of a table of text.
     pub(crate) fn is_container(self) -> bool {
         self.description().is_it.is_none()
     }
@@ -140,7 +143,7 @@ impl FromStr for Format {
     }
 }
 
-/// Whether a table has a header with these names.
+/// Whether the header of a table contains all these names.
 fn has(table: &Table, names: &[&str]) -> bool {
     table.header.is_some()
         && names.iter().all(|name| table.columns.iter().any(|column| column.name == *name))

@@ -1,16 +1,16 @@
-//! The columns that a reader wants by name, as people name them.
+//! Finds the columns that a reader asks for, under the names that people commonly use.
 
 use crate::error::{Error, listed, quoted};
 use crate::names::{Named, meaning, named};
 use crate::options::Options;
 use crate::unit::{Quantity, Unit};
 
-/// A column that some reader wants, and what else it is called.
+/// A column that some reader asks for, and its other names.
 #[derive(Debug)]
 struct Known {
     name: &'static str,
     quantity: Option<Quantity>,
-    /// In lower case, without what separates words and without units.
+    /// The other names: in lower case, without separators between words and without units.
     aliases: &'static [&'static str],
 }
 
@@ -22,7 +22,7 @@ const fn named_only(name: &'static str, aliases: &'static [&'static str]) -> Kno
     Known { name, quantity: None, aliases }
 }
 
-/// What is wanted by readers; time and the axes of an inertial sensor are known to [`crate::names`].
+/// The columns that readers ask for; [`crate::names`] knows time and the axes of an inertial sensor.
 const KNOWN: &[Known] = &[
     Known {
         name: "anchor",
@@ -93,7 +93,7 @@ const KNOWN: &[Known] = &[
         &["vright", "vr", "right", "rightspeed", "speedright", "rightvelocity", "velocityright"],
     ),
     of(Quantity::Length, "track", &["track", "trackwidth", "wheeltrack", "axletrack"]),
-    // Of flights by these names alone: a pitch without a unit may well be in degrees.
+    // Columns of flights have no aliases: a pitch without a unit may well be in degrees.
     of(Quantity::Inclination, "alpha", &[]),
     of(Quantity::Rate, "q", &[]),
     of(Quantity::Speed, "V", &[]),
@@ -102,36 +102,36 @@ const KNOWN: &[Known] = &[
     of(Quantity::Share, "delta_t", &[]),
 ];
 
-/// The names that options may give columns and units to, beside time and the axes.
+/// The names that options may assign columns and units to, beside time and the axes.
 pub(crate) fn names() -> impl Iterator<Item = (&'static str, Option<Quantity>)> {
     KNOWN.iter().map(|known| (known.name, known.quantity))
 }
 
-/// A column of a table.
+/// A column that was found in a table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Place {
-    /// Which column, from 0.
+    /// The index of the column, from 0.
     pub column: usize,
-    /// As the header names it.
+    /// The name in the header.
     pub name: String,
-    /// Its unit, if the header or an option says it.
+    /// The unit, if the header or an option gives it.
     pub unit: Option<Unit>,
-    /// Whether an option says that its sign is the other one.
+    /// Whether an option reverses the sign.
     pub is_negative: bool,
 }
 
 impl Place {
-    /// How much one of the column's unit is in that of the SI.
+    /// The factor that converts the column's values to the SI unit.
     pub fn scale(&self) -> f64 {
         let scale = self.unit.as_ref().map_or(1.0, |unit| unit.scale);
         if self.is_negative { -scale } else { scale }
     }
 }
 
-/// The names of a table's columns.
+/// The column names of a table.
 #[derive(Debug, Clone)]
 pub struct Heading<'a> {
-    /// The line it stands on, from 1.
+    /// The line of the header, from 1.
     pub line: usize,
     names: Vec<String>,
     options: &'a Options,
@@ -142,15 +142,15 @@ impl<'a> Heading<'a> {
         Self { line, names, options }
     }
 
-    /// The names as they stand there.
+    /// The column names as they are written in the header.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// The column of this name, if there is one: as an option says, of exactly this name, or as people name it.
+    /// The column of this name, if there is one: chosen by an option, by an exact match, or by a known alias.
     ///
     /// # Errors
-    /// [`Error::Line`] if two columns may be it, or if there is none of the name that an option says.
+    /// [`Error::Line`] if two columns match, or if the column that an option names is missing.
     pub fn find(&self, name: &str) -> Result<Option<Place>, Error> {
         let unit = self.options.units.of(name);
         let said = self.options.columns.of(name);
@@ -192,7 +192,7 @@ impl<'a> Heading<'a> {
         Ok(Some(place(column, named)))
     }
 
-    /// Whether a column may be the wanted one, and the unit that its name says.
+    /// Whether a column may be the wanted one, and the unit that its name contains.
     fn named(&self, wanted: &str, column: usize) -> Option<Named> {
         let name = &self.names[column];
         if let Some(known) = KNOWN.iter().find(|known| known.name == wanted) {
@@ -215,13 +215,13 @@ impl<'a> Heading<'a> {
         places.try_into().map_err(|_| Error::line(self.line, "expected a header, found none"))
     }
 
-    /// A complaint that there is no column of this name.
+    /// The error for a missing column of this name.
     pub fn lacks(&self, name: &str) -> Error {
         let problem = format!("expected a header with a column {name}, found {}", self.all());
         Error::line(self.line, problem)
     }
 
-    /// The columns that there are.
+    /// The names of all columns, for an error message.
     fn all(&self) -> String {
         listed(self.names.iter().map(String::as_str))
     }

@@ -5,27 +5,27 @@
 //! - **The accelerometer's unit**: at rest it shows 1 g.
 //! - **The gyroscope's unit, and that of time where its spacing leaves a choice**: between two moments of rest the turn
 //!   that it measured must carry the direction of gravity along, and the turned specific force must be gravity's reaction
-//!   in the mean. Of all units the one must fit far better than the others. There is no threshold of plausible rates.
+//!   in the mean. One unit must fit far better than all others. There is no threshold of plausible rates.
 //! - **Swapped or mirrored axes** of the gyroscope against the accelerometer: the same test over all 48 ways.
 //!
 //! # What the data cannot tell
 //!
-//! **The sign of the accelerometer.** Some sensors show −1 g upwards at rest. Let `R` be the turn from the body to a frame
-//! with z up, `f` the specific force and `g` gravity, so that the acceleration is `a = R f − g z`. A log whose
-//! accelerometer has the other sign holds `f' = −f` with the same rates. Whoever aligns it takes the opposite direction for
-//! up: `R' = H R`, where `H` is half a turn about a horizontal axis, `H z = −z`. The rates carry `R'` along as they carry
-//! `R`. Then
+//! **The sign of the accelerometer.** Some sensors show −1 g upwards at rest. Let `R` be the turn from the body to a
+//! frame with z up, `f` the specific force and `g` gravity, so that the acceleration is `a = R f − g z`. A log whose
+//! accelerometer has the other sign holds `f' = −f` with the same rates. An alignment takes the opposite direction for
+//! up: `R' = H R`, where `H` is half a turn about a horizontal axis, `H z = −z`. The rates carry `R'` along as they
+//! carry `R`. Then
 //!
 //! ```text
 //! a' = R' f' − g z = −H R f − g z = −H (a + g z) − g z = −H a + g z − g z = −H a
 //! ```
 //!
 //! and `−H` is a reflection in a vertical plane: for `H = diag(1, −1, −1)` it is `diag(−1, 1, 1)`. So all positions are
-//! mirrored, heights and lengths are the same, nothing in the log contradicts, and a foot rises in each stride either way.
-//! A sensor may also be mounted upside down, so a negative z proves nothing. Specific force, +1 g upwards at rest, is taken
-//! unless a format or an option (`acc=-g`) says otherwise.
+//! mirrored, heights and lengths are the same, nothing in the log contradicts this, and a foot rises in each stride
+//! either way. A sensor may also be mounted upside down, so a negative z proves nothing. Specific force, +1 g upwards
+//! at rest, is taken unless a format or an option (`acc=-g`) says otherwise.
 //!
-//! **A turn of all axes together**, how the sensor is mounted, is no error: it changes nothing.
+//! **A rotation of all axes together**, that is, the mounting of the sensor, is not an error: it changes nothing.
 
 mod by_name;
 mod columns;
@@ -59,14 +59,14 @@ use crate::options::{Options, ROLES};
 use crate::table::Table;
 use crate::unit::STANDARD_GRAVITY;
 
-/// Beyond what any accelerometer gives, m/s²: 1000 g.
+/// The largest plausible specific force, m/s²: 1000 g, beyond any accelerometer.
 const LARGEST_SPECIFIC_FORCE: f64 = 1000.0 * STANDARD_GRAVITY;
-/// Beyond what any gyroscope gives, rad/s: 10⁵ °/s.
+/// The largest plausible angular rate, rad/s: 10⁵ °/s, beyond any gyroscope.
 const LARGEST_ANGULAR_RATE: f64 = 1e5 * std::f64::consts::PI / 180.0;
-/// Beyond any clock, s: three centuries, within which a double resolves microseconds.
+/// The latest plausible time, s: three centuries, beyond any clock; up to there a double resolves microseconds.
 const LATEST_TIME: f64 = 1e10;
 
-/// Names of a magnetometer's columns. Any unit will do: only its directions and ratios are used.
+/// The names of a magnetometer's columns. Any unit will do: only directions and ratios are used.
 const FIELD_COLUMNS: [[&str; 3]; 5] = [
     ["mx_G", "my_G", "mz_G"],
     ["mx_uT", "my_uT", "mz_uT"],
@@ -75,10 +75,10 @@ const FIELD_COLUMNS: [[&str; 3]; 5] = [
     ["mag_x", "mag_y", "mag_z"],
 ];
 
-/// What a sensor says at one moment, in its own frame.
+/// One sample of an inertial sensor, in its own frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
-    /// Time of the log's own clock, µs.
+    /// Time on the log's own clock, µs.
     pub time_us: u64,
     /// Specific force, m/s²: +1 g upwards at rest.
     pub specific_force: [f64; 3],
@@ -91,13 +91,13 @@ pub struct Sample {
 pub struct Inertial {
     /// At least one sample; times never decrease.
     pub samples: Vec<Sample>,
-    /// The line of each sample, or its record in a file that is no text; in a zip of texts its line in the gyroscope's.
+    /// The line of each sample, or its record in a binary file; in a zip of texts, its line in the gyroscope's text.
     pub rows: Vec<usize>,
-    /// What was taken from the log's times, s: 0 unless they begin below zero or beyond 10¹⁰ s.
+    /// The offset that was subtracted from the log's times, s: 0 unless they begin below zero or beyond 10¹⁰ s.
     pub start: f64,
-    /// The other columns of numbers, by name: a value for each sample, not a number where there is none.
+    /// The other numeric columns, by name: one value for each sample, NaN where it is missing.
     pub other: Vec<(String, Vec<f64>)>,
-    /// What was concluded, and from what.
+    /// What was concluded about the log, and on what evidence.
     pub conclusions: Vec<Conclusion>,
     /// What was skipped.
     pub damage: Damage,
@@ -110,13 +110,13 @@ impl Inertial {
         found.map(|(_, values)| values.as_slice())
     }
 
-    /// The names of a magnetometer's columns, if there are any of a usual name.
+    /// The names of the magnetometer's columns, if the log has columns of a usual name.
     pub fn magnetic_columns(&self) -> Option<[&'static str; 3]> {
         let is_there = |name: &&str| self.column(name).is_some();
         FIELD_COLUMNS.into_iter().find(|names| names.iter().all(is_there))
     }
 
-    /// The magnetic field at each sample (body, in the log's unit, not a number where it was not measured), if there are
+    /// The magnetic field at each sample (body frame, in the log's unit, NaN where it was not measured), if there are
     /// [columns](Self::magnetic_columns) of it.
     pub fn magnetic_field(&self) -> Option<Vec<[f64; 3]>> {
         let [x, y, z] = self.magnetic_columns()?.map(|name| self.column(name));
@@ -135,7 +135,7 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Inertial, Error> {
     let mut damage = std::mem::take(&mut table.damage);
     let total = table.lines.len() + damage.count();
     damage.accept(total, options.strict)?;
-    // Of a format the places are known.
+    // A known format determines the columns.
     if format.is_none_or(|format| format.description().is_a_guess) {
         refuse_other_header(&table)?;
     }
@@ -155,7 +155,8 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Inertial, Error> {
     Ok(Inertial { samples, rows: rows.lines, start, other, conclusions, damage })
 }
 
-/// A line above the rows that names most of the columns, but not as many as there are, leaves open which is which.
+/// Refuses a table whose line above the rows names most of the columns, but not exactly as many as there are: which
+/// name belongs to which column is then undecided.
 fn refuse_other_header(table: &Table) -> Result<(), Error> {
     let Some((line, words)) = &table.other_header else { return Ok(()) };
     let named = words.iter().filter(|word| crate::names::meaning(word).is_some()).count();
@@ -169,7 +170,7 @@ fn refuse_other_header(table: &Table) -> Result<(), Error> {
     ))
 }
 
-/// What the clock may count to, in its own unit: a day, or 32 bits.
+/// The values at which the clock may wrap, in its own unit: a day, or 32 bits.
 fn periods(table: &Table, columns: &Columns) -> Vec<f64> {
     const DAY: f64 = 86_400.0;
     const BITS: f64 = 4_294_967_296.0;
@@ -180,7 +181,8 @@ fn periods(table: &Table, columns: &Columns) -> Vec<f64> {
     }
 }
 
-/// The samples in SI units, without what no sensor can have said; and what was taken from their times, s.
+/// The samples in SI units, without values that no sensor can measure; and the offset that was subtracted from their
+/// times, s.
 fn samples(
     rows: &mut Rows,
     columns: &Columns,
@@ -211,7 +213,7 @@ fn samples(
     (samples, start * time.scale)
 }
 
-/// What no sensor can have said.
+/// Describes values that no sensor can measure, if there are any.
 fn beyond(specific_force: &[f64; 3], angular_rate: &[f64; 3]) -> Option<String> {
     let values = [
         (&ROLES[1..4], specific_force, LARGEST_SPECIFIC_FORCE, "m/s² (1000 g)"),
@@ -224,7 +226,7 @@ fn beyond(specific_force: &[f64; 3], angular_rate: &[f64; 3]) -> Option<String> 
     })
 }
 
-/// The numbers that are neither time nor the sensor's.
+/// The numeric columns that are neither time nor the sensor's axes.
 fn other(table: Table, columns: &Columns, places: &[usize]) -> Vec<(String, Vec<f64>)> {
     let used = |at: usize| {
         columns.time == Some(at) || columns.sensors.iter().any(|axis| axis.column == at)

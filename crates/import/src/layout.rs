@@ -1,4 +1,4 @@
-//! Where a table begins: its header, a line of units, its first row.
+//! The beginning of a table: its header, a line of units, its first row.
 
 use std::borrow::Cow;
 
@@ -8,7 +8,7 @@ use crate::moment::{self, Moment};
 use crate::text::{Text, letters};
 use crate::unit;
 
-/// How many rows are looked at to tell what a column holds.
+/// The number of rows that are looked at to detect what a column holds.
 const SAMPLE: usize = 200;
 
 /// What a column holds.
@@ -17,26 +17,26 @@ const SAMPLE: usize = 200;
 pub enum Kind {
     /// Numbers.
     Number,
-    /// Dates with times: microseconds since 1970.
+    /// Dates with times, as microseconds since 1970.
     Date,
-    /// Times of day: microseconds since midnight.
+    /// Times of day, as microseconds since midnight.
     TimeOfDay,
     /// Anything else; it is not kept.
     Words,
 }
 
-/// The beginning of a table.
+/// The layout of a table's beginning.
 #[derive(Debug, Clone)]
 pub(crate) struct Layout {
     pub(crate) dialect: Dialect,
-    /// The line of the header.
+    /// The line of the header, if there is one.
     pub(crate) header: Option<usize>,
     /// The line of the first row.
     pub(crate) first_row: usize,
     pub(crate) names: Vec<String>,
     pub(crate) units: Vec<Option<String>>,
     pub(crate) kinds: Vec<Kind>,
-    /// What stands right above the rows, if it is not a header of as many columns.
+    /// The line number and words directly above the rows, if these are not a header with as many names as columns.
     pub(crate) other_header: Option<(usize, Vec<String>)>,
 }
 
@@ -60,7 +60,7 @@ impl Layout {
             kinds: kinds(text, dialect, width, first.number),
             other_header: None,
         };
-        // A line of units stands under names, a header may be the last comment.
+        // A line of units follows the names; a header may be the last comment.
         let mut lines = above.iter().rev().map(|line| (line.number, line.bytes));
         let mut nearest = lines.next();
         if let (Some(units), Some((number, bytes))) = (
@@ -81,13 +81,14 @@ impl Layout {
     }
 }
 
-/// The names of a header of so many columns, if a line is one: no field is a number, and at least so many are not empty.
+/// The names in a header of `width` columns, if the line is one: no field is a number, and at least `least` fields are
+/// not empty.
 fn header_names(dialect: Dialect, width: usize, bytes: &[u8], least: usize) -> Option<Vec<String>> {
     let mut bytes = bytes;
     while let [b'#' | b'%' | b'/' | b' ' | b';', rest @ ..] = bytes {
         bytes = rest;
     }
-    // Names may hold blanks, and be separated otherwise than the numbers.
+    // Names may contain blanks, and their separator may differ from that of the numbers.
     let separators = [dialect.separator, Separator::Tab, Separator::Comma, Separator::Semicolon];
     separators.into_iter().find_map(|separator| {
         let fields = Dialect::new(separator, false).fields(bytes);
@@ -102,14 +103,14 @@ fn header_names(dialect: Dialect, width: usize, bytes: &[u8], least: usize) -> O
     })
 }
 
-/// The words of a line, however they are separated.
+/// The words of a line, whatever separates them.
 fn any_names(bytes: &[u8]) -> Vec<String> {
     let text = letters(bytes);
     let words = text.split([',', ';', '\t', ' ']).map(|word| word.trim().to_owned());
     words.filter(|word| !word.is_empty()).collect()
 }
 
-/// The units of a line that names nothing else.
+/// The units of a line that consists of units.
 fn units_line(fields: Vec<String>) -> Option<Vec<Option<String>>> {
     let fields: Vec<_> = fields
         .into_iter()

@@ -22,32 +22,32 @@ use crate::error::{Error, listed};
 use crate::options::Options;
 use crate::part::Part;
 
-/// Between messages that are farther apart nothing is interpolated, µs.
+/// The longest gap between messages that is interpolated over, µs.
 const LONGEST_GAP_US: f64 = 2e6;
-/// What options may be about.
+/// The columns that options may refer to.
 const NAMES: [&str; 4] = ["lat", "h", "rssi_db", "path_loss_db"];
 
-/// A level and where it was heard.
+/// A received level, and where it was received.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Heard {
-    /// Time of the log's clock, µs.
+    /// Time on the log's clock, µs.
     pub time_us: i64,
-    /// Degrees.
+    /// Latitude, degrees.
     pub latitude: f64,
-    /// Degrees.
+    /// Longitude, degrees.
     pub longitude: f64,
-    /// Above where the drone took off, m.
+    /// Height above the take-off point, m.
     pub height: f64,
-    /// dB
+    /// Level or path loss, dB.
     pub level: f64,
 }
 
 /// A log of levels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Levels {
-    /// In the order of their times.
+    /// The levels, in order of time.
     pub heard: Vec<Heard>,
-    /// Whether they are path losses.
+    /// Whether the levels are path losses.
     pub are_losses: bool,
     /// What was recognised.
     pub conclusions: Vec<String>,
@@ -55,7 +55,7 @@ pub struct Levels {
     pub damage: Damage,
 }
 
-/// Reads the levels of a bag or MCAP file; none if it is another file.
+/// Reads the levels of a bag or MCAP file; `None` if it is another file.
 ///
 /// # Errors
 /// What was expected and what was found, and which option decides where the log does not tell.
@@ -131,25 +131,25 @@ fn is_stamped(stamp: Option<f64>) -> bool {
     stamp.is_some_and(|stamp| stamp != 0.0)
 }
 
-/// Whether a message is of a fix: `STATUS_NO_FIX` is −1.
+/// Whether a message holds a valid fix: `STATUS_NO_FIX` is −1.
 fn is_fix(entry: &LevelEntry) -> bool {
     let [latitude, longitude, _, status] = entry.values;
     status >= 0.0 && latitude.abs() <= 90.0 && longitude.abs() <= 360.0
 }
 
-/// Which of a message's times is taken.
+/// Which time of a message is used: its stamp or its receipt.
 struct Times {
     has_stamps: bool,
 }
 
 impl Times {
-    /// µs
+    /// The time of a message, µs.
     fn of(&self, entry: &LevelEntry) -> f64 {
         if self.has_stamps { entry.stamp.unwrap_or(entry.receipt) } else { entry.receipt }
     }
 }
 
-/// Numbers by time.
+/// Numbers over time.
 struct Track(Vec<(f64, [f64; 4])>);
 
 impl Track {
@@ -160,7 +160,7 @@ impl Track {
         Self(track)
     }
 
-    /// The numbers at a time between two that are near each other.
+    /// The numbers at a time, interpolated between two entries that are near each other.
     fn at(&self, time: f64) -> Option<[f64; 4]> {
         let next = self.0.partition_point(|(own, _)| *own < time);
         let &(end, to) = self.0.get(next)?;

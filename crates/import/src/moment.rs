@@ -1,4 +1,4 @@
-//! Dates and times of day as text.
+//! Parses dates and times of day.
 
 use std::time::UNIX_EPOCH;
 
@@ -12,7 +12,7 @@ pub(crate) enum Moment {
 }
 
 impl Moment {
-    /// The microseconds.
+    /// The time in microseconds.
     pub(crate) fn microseconds(self) -> f64 {
         match self {
             Self::Date(value) | Self::OfDay(value) => value,
@@ -42,7 +42,7 @@ fn date(day: &str, clock: &str) -> Option<Moment> {
     Some(Moment::Date((midnight - east) * 1e6 + of_day))
 }
 
-/// A time without its zone, and how far that is east of UTC, s.
+/// A time without its zone, and the zone's offset east of UTC, s.
 fn zone(clock: &str) -> Option<(&str, f64)> {
     if let Some(clock) = clock.strip_suffix(['Z', 'z']) {
         return Some((clock.trim(), 0.0));
@@ -57,7 +57,7 @@ fn zone(clock: &str) -> Option<(&str, f64)> {
     Some((clock.trim(), sign * (hours * 3600.0 + minutes * 60.0)))
 }
 
-/// Microseconds since midnight of `10:00:00.25`.
+/// The microseconds since midnight of a time such as `10:00:00.25`.
 fn of_day(clock: &str) -> Option<f64> {
     let mut parts = clock.split(':');
     let hours: u32 = parts.next().filter(|text| is_digits(text, 2))?.parse().ok()?;

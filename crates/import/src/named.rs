@@ -1,6 +1,7 @@
-//! Tables whose columns are wanted by name: logs of ranges, levels and wheels, and lists of places.
+//! Tables whose columns are found by name: logs of ranges, levels and wheels, and lists of places.
 //!
-//! The first line that holds the wanted names is the header, whatever separates them; the names decide, never the separator.
+//! The first line that holds the wanted names is the header, whatever separates them; the names decide, never the
+//! separator.
 
 use std::borrow::Cow;
 
@@ -10,9 +11,9 @@ use crate::moment;
 use crate::options::Options;
 use crate::text::{Text, letters};
 
-/// How many lines may stand above the header.
+/// The largest number of lines above the header.
 const ABOVE: usize = 60;
-/// How many rows are looked at to tell how numbers are written.
+/// The number of rows that are looked at to detect how numbers are written.
 const SAMPLE: usize = 400;
 
 /// A table with a header.
@@ -21,13 +22,13 @@ pub struct NamedTable<'a> {
     text: &'a Text<'a>,
     /// The header.
     pub heading: Heading<'a>,
-    /// How it is written.
+    /// The dialect of the table.
     pub dialect: Dialect,
 }
 
 impl<'a> NamedTable<'a> {
-    /// Finds the header: the first line, and the first separator, with which `columns` finds all that it wants; and what
-    /// it finds, or what it says of the first line. None if there is no line.
+    /// Finds the header: the first line, with the first separator, in which `columns` finds all that it needs. Returns
+    /// the table with what `columns` found, or else its error for the first line; `None` if there is no line.
     pub fn find<T, E>(
         text: &'a Text<'a>,
         options: &'a Options,
@@ -55,7 +56,7 @@ impl<'a> NamedTable<'a> {
                             best = Some((fits, table, found));
                         }
                     }
-                    // Of the ways to take a line apart the one with most names is told.
+                    // The error of the separator that yields most names is kept.
                     Err(error) if worst.as_ref().is_none_or(|(most, _)| names > *most) => {
                         worst = Some((names, error));
                     }
@@ -71,14 +72,14 @@ impl<'a> NamedTable<'a> {
         first.map(Err)
     }
 
-    /// The lines below the header that are no comments: their numbers and fields.
+    /// The number and fields of each line below the header that is not a comment.
     pub fn rows(&self) -> impl Iterator<Item = (usize, Vec<Cow<'_, [u8]>>)> {
         let below = self.text.lines().filter(|line| line.number > self.heading.line);
         let rows = below.filter(|line| !self.dialect.is_comment(line.bytes));
         rows.map(|line| (line.number, self.fields(line.bytes)))
     }
 
-    /// The fields of a line; a separator may end it.
+    /// The fields of a line, which may end with a separator.
     fn fields<'b>(&self, bytes: &'b [u8]) -> Vec<Cow<'b, [u8]>> {
         let mut fields = self.dialect.fields(bytes);
         let ends = fields.len() == self.heading.names().len() + 1;
@@ -94,7 +95,7 @@ impl<'a> NamedTable<'a> {
         self.rows().take(SAMPLE).filter(|(_, fields)| fields.len() == width).count()
     }
 
-    /// Whether most numbers that could show it have a decimal comma.
+    /// Whether most of the numbers that have a decimal sign have a comma.
     fn has_decimal_commas(&self) -> bool {
         if self.dialect.separator == Separator::Comma {
             return false;
@@ -113,18 +114,18 @@ impl<'a> NamedTable<'a> {
         commas > points
     }
 
-    /// A number, which may be infinite or not a number.
+    /// The number in a field; it may be infinite or NaN.
     pub fn number(&self, field: &[u8]) -> Option<f64> {
         self.dialect.number(field)
     }
 
-    /// A date with a time, or a time of day, in s since 1970 or midnight.
+    /// The date with a time, or time of day, in a field, in s since 1970 or since midnight.
     pub fn moment(&self, field: &[u8]) -> Option<f64> {
         moment::read(field).map(|moment| moment.microseconds() * 1e-6)
     }
 }
 
-/// A header may be a comment.
+/// A line without leading comment marks: a header may be a comment.
 fn bare(line: &[u8]) -> &[u8] {
     let mut line = line;
     while let [b'#' | b'%' | b'/' | b' ', rest @ ..] = line {

@@ -38,7 +38,7 @@ const TIMES: [&str; 23] = [
     "tiempo",
     "unixtime",
 ];
-/// Names of time that are its unit.
+/// Names of time columns that are the unit itself.
 const TIMES_IN: [(&str, &str); 16] = [
     ("secondselapsed", "s"),
     ("seconds", "s"),
@@ -86,24 +86,24 @@ const GYROSCOPES: [&str; 12] = [
 /// Words that say nothing about what a column holds.
 const FILLERS: [&str; 7] = ["imu", "raw", "cal", "calibrated", "sensor", "axis", "data"];
 
-/// What a column's name says.
+/// The meaning of a column's name.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Meaning {
     pub(crate) quantity: Quantity,
-    /// 0, 1 and 2 for x, y and z; 0 of time.
+    /// 0, 1 and 2 for x, y and z; 0 for time.
     pub(crate) axis: usize,
-    /// Which of the names it is, as the columns of one sensor share it.
+    /// The index of the sensor's name among the known ones: the columns of one sensor share it.
     pub(crate) alias: usize,
     pub(crate) unit: Option<Unit>,
 }
 
-/// What a name says, if it says anything known.
+/// The meaning of a column's name, if it is a known one.
 pub(crate) fn meaning(name: &str) -> Option<Meaning> {
     let (base, bracket) = split_unit(name);
     if base == "T" {
         return None;
     }
-    // `gyr_x_°/s`: a unit of more than letters.
+    // `gyr_x_°/s`: a unit with characters other than letters.
     if let Some((base, unit)) = base.rsplit_once(['_', ' ']).filter(|_| bracket.is_none())
         && let Some(mut meaning) = plain_meaning(&words(base).concat())
         && let Some(unit) = Unit::read(meaning.quantity, unit)
@@ -113,7 +113,7 @@ pub(crate) fn meaning(name: &str) -> Option<Meaning> {
     }
     let words: Vec<_> =
         words(base).into_iter().filter(|w| !FILLERS.contains(&w.as_str())).collect();
-    // A unit behind the name is the shortest possible.
+    // Take the shortest possible unit at the end of the name.
     (1..=words.len()).rev().find_map(|end| {
         let mut meaning = plain_meaning(&words[..end].concat())?;
         if end < words.len() {
@@ -126,18 +126,18 @@ pub(crate) fn meaning(name: &str) -> Option<Meaning> {
     })
 }
 
-/// That a column's name is the one that is wanted, and the unit that it says.
+/// A column name that matches the wanted one, with the unit that it contains.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Named {
     pub(crate) unit: Option<Unit>,
 }
 
-/// Whether a name is one of these aliases, with a unit of the quantity behind it or in brackets.
+/// Matches a name against aliases, with a unit of the quantity behind it or in brackets.
 pub(crate) fn named(name: &str, quantity: Option<Quantity>, aliases: &[&str]) -> Option<Named> {
     let (base, bracket) = split_unit(name);
     let is_one = |text: &str| aliases.contains(&text);
     let unit = |text: &str| quantity.and_then(|quantity| Unit::read(quantity, text));
-    // `speed_cm/s`: a unit of more than letters.
+    // `speed_cm/s`: a unit with characters other than letters.
     if let Some((base, text)) = base.rsplit_once(['_', ' '])
         && let (true, Some(unit)) = (is_one(&words(base).concat()), unit(text))
     {
@@ -149,12 +149,12 @@ pub(crate) fn named(name: &str, quantity: Option<Quantity>, aliases: &[&str]) ->
             return None;
         }
         let behind = if end < words.len() { Some(unit(&words[end..].concat())?) } else { None };
-        // What stands in brackets may say something else than a unit.
+        // The brackets may contain something other than a unit.
         Some(Named { unit: bracket.and_then(unit).or(behind) })
     })
 }
 
-/// A name without what stands in brackets behind it, and that.
+/// Splits a name into the part before the brackets and the brackets themselves.
 pub(crate) fn split_unit(name: &str) -> (&str, Option<&str>) {
     let name = name.trim();
     let open = name.find(['[', '(', '{']).filter(|&at| at > 0);
@@ -195,7 +195,7 @@ fn plain_meaning(name: &str) -> Option<Meaning> {
     let behind = name.char_indices().last();
     let behind = behind.and_then(|(at, letter)| Some((&name[..at], axis_of(letter)?)));
     let before = name.chars().next();
-    // A single letter stands before its axis: `ya` is no accelerometer.
+    // A short sensor name precedes its axis: `ya` is not an accelerometer.
     let before = before.and_then(|letter| Some((&name[letter.len_utf8()..], axis_of(letter)?)));
     let before = before.filter(|(sensor, _)| sensor.len() > 2);
     for (sensor, axis) in behind.into_iter().chain(before) {

@@ -1,29 +1,29 @@
-//! Decimal numbers as logs mostly write them: a sign, digits that make an integer below 2⁵³, a point.
+//! Fast parsing of decimal numbers as logs mostly contain them: a sign, digits that form an integer below 2⁵³, a point.
 
-/// Below this every integer is a double.
+/// Every integer below this is exactly a double.
 const EXACT: u64 = 1 << 53;
-/// As many digits fit into 64 bits, whatever they are.
+/// The number of digits that always fit into 64 bits.
 const MOST_DIGITS: usize = 19;
-/// Powers of ten, which all are doubles.
+/// Powers of ten, all of which are exactly doubles.
 const POWERS: [f64; MOST_DIGITS + 1] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
     1e17, 1e18, 1e19,
 ];
-/// The same as integers.
+/// Powers of ten as integers.
 const TENS: [u64; 9] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
 
-/// The number that a text begins with, to the last bit, and its length.
+/// The number at the beginning of a text, correct to the last bit, and its length.
 #[inline(always)] // As a call it takes half as long again: a log is hardly anything but numbers.
 pub(crate) fn leading(text: &[u8]) -> Option<(f64, usize)> {
     plain(text).or_else(|| fast_float2::parse_partial(text).ok())
 }
 
-/// The number that a text is.
+/// The number that an entire text represents.
 pub(crate) fn whole(text: &[u8]) -> Option<f64> {
     leading(text).filter(|(_, length)| *length == text.len()).map(|(number, _)| number)
 }
 
-/// As [`leading`], of a number of few digits without an exponent.
+/// Fast path of [`leading`], for a number of few digits without an exponent.
 #[inline(always)]
 fn plain(text: &[u8]) -> Option<(f64, usize)> {
     let is_negative = text.first() == Some(&b'-');
@@ -53,9 +53,9 @@ fn plain(text: &[u8]) -> Option<(f64, usize)> {
     if count == 0 || count > MOST_DIGITS || mantissa >= EXACT || !is_whole {
         return None;
     }
-    // Two doubles without error make a quotient that is rounded once.
+    // The quotient of two exact doubles is rounded only once.
     let magnitude = mantissa as f64 / POWERS.get(decimals)?;
-    // By its bit: signs come as they like, and no branch could be foreseen.
+    // The sign is set by its bit: signs are unpredictable, so a branch would often be mispredicted.
     Some((f64::from_bits(magnitude.to_bits() | u64::from(is_negative) << 63), end))
 }
 
@@ -64,14 +64,14 @@ fn digit(text: &[u8], at: usize) -> Option<u64> {
     text.get(at).map(|byte| byte.wrapping_sub(b'0')).filter(|&it| it < 10).map(u64::from)
 }
 
-/// The number of which the digits are that eight bytes begin with, and how many these are.
+/// The number formed by the digits at the beginning of eight bytes, and how many digits these are.
 #[inline(always)]
 fn up_to_eight(chunk: [u8; 8]) -> (u64, usize) {
     let values = u64::from_le_bytes(chunk) ^ 0x3030_3030_3030_3030;
-    // The highest bit of each byte that is no digit; of those above the lowest such byte some may be wrong.
+    // Sets the highest bit of each byte that is not a digit; bytes above the lowest such byte may be marked wrongly.
     let others = (values.wrapping_add(0x7676_7676_7676_7676) | values) & 0x8080_8080_8080_8080;
     let count = (others.trailing_zeros() / 8) as usize;
-    // Zeros in front of the digits; pairs, then fours, then all.
+    // Zeros before the digits; then pairs, fours and all eight are combined.
     let digits = if count == 0 { 0 } else { values << (64 - 8 * count) };
     let pairs = (digits.wrapping_mul(1 + (10 << 8)) >> 8) & 0x00ff_00ff_00ff_00ff;
     let fours = (pairs.wrapping_mul(1 + (100 << 16)) >> 16) & 0x0000_ffff_0000_ffff;

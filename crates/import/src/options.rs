@@ -1,4 +1,4 @@
-//! What the user says about a log, which overrules all that is found.
+//! The user's statements about a log, which overrule everything that is inferred.
 
 use std::str::FromStr;
 
@@ -7,24 +7,24 @@ use crate::formats::Format;
 use crate::heading;
 use crate::unit::{Quantity, Unit};
 
-/// What the user says about a log.
+/// The user's statements about a log.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
-    /// Which columns are time, accelerometer and gyroscope.
+    /// The columns that are time, accelerometer and gyroscope.
     pub columns: Columns,
-    /// Which units they have.
+    /// The units of the columns.
     pub units: Units,
-    /// Which program or device wrote the log.
+    /// The program or device that wrote the log.
     pub format: Option<Format>,
-    /// Which of several sensors in one file: the name of a topic in a ROS bag or MCAP file, the number of an `ArduPilot`
-    /// or PX4 sensor.
+    /// The sensor to read of several in one file: the name of a topic in a ROS bag or MCAP file, the number of an
+    /// `ArduPilot` or PX4 sensor.
     pub topic: Option<String>,
-    /// Whether the first damaged line refuses the log, instead of being skipped.
+    /// Whether the first damaged line causes the log to be refused, instead of being skipped.
     pub strict: bool,
 }
 
 impl Options {
-    /// Refuses what is said about columns that the log of an inertial sensor has not.
+    /// Refuses statements about columns that the log of an inertial sensor does not have.
     pub(crate) fn refuse_others(&self) -> Result<(), Error> {
         let columns = self.columns.others.iter().map(|(name, _)| *name);
         let mut others = columns.chain(self.units.others.iter().map(|(name, _)| *name));
@@ -36,7 +36,7 @@ impl Options {
 }
 
 impl Options {
-    /// Refuses what is said about other columns than these, and the form of the log.
+    /// Refuses statements about columns other than these, and about the log's format.
     pub(crate) fn refuse_beside(&self, names: &[&str]) -> Result<(), Error> {
         let roles = ROLES.iter().zip(&self.columns.picks).filter(|(_, pick)| pick.is_some());
         let columns = roles.map(|(role, _)| *role);
@@ -54,21 +54,21 @@ impl Options {
     }
 }
 
-/// The names of what a log must hold.
+/// The names of the columns that an inertial log must hold.
 pub(crate) const ROLES: [&str; 7] = ["t", "ax", "ay", "az", "gx", "gy", "gz"];
 
-/// Which columns are time, accelerometer and gyroscope: `t=timestamp,ax=AccX,gy=-GyrZ`. A minus sign turns an axis round.
-/// Without a header columns are named by their number, from 1. Of other logs: `anchor=node,range=dist`.
+/// The columns of time, accelerometer and gyroscope: `t=timestamp,ax=AccX,gy=-GyrZ`. A minus sign reverses an axis.
+/// Without a header columns are named by their number, from 1. In other logs: `anchor=node,range=dist`.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Columns {
-    /// In the order t, ax, ay, az, gx, gy, gz.
+    /// The choices in the order t, ax, ay, az, gx, gy, gz.
     pub(crate) picks: [Option<Pick>; 7],
-    /// Of logs of other sensors.
+    /// The choices for logs of other sensors.
     others: Vec<(&'static str, Pick)>,
 }
 
 impl Columns {
-    /// The column that is said to be the one of this name.
+    /// The column that was chosen for this name.
     pub(crate) fn of(&self, name: &str) -> Option<&Pick> {
         match ROLES.iter().position(|&role| role == name) {
             Some(place) => self.picks[place].as_ref(),
@@ -77,7 +77,7 @@ impl Columns {
     }
 }
 
-/// A column, as it is or turned round.
+/// A column, possibly with its sign reversed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Pick {
     pub(crate) name: String,
@@ -109,23 +109,25 @@ impl FromStr for Columns {
     }
 }
 
-/// The units of a log: `acc=g,gyro=deg/s,t=ms`. A factor may stand before a unit (`gyro=0.07deg/s`), a minus sign before
-/// that of an accelerometer that shows −1 g upwards at rest (`acc=-g`); counts are told by how many make a g or a °/s
-/// (`acc=16384lsb,gyro=131lsb`), and samples that only have a number by their rate (`t=100Hz`).
+/// The units of a log: `acc=g,gyro=deg/s,t=ms`.
+///
+/// A factor may precede a unit (`gyro=0.07deg/s`), and a minus sign that of an accelerometer that shows −1 g upwards at
+/// rest (`acc=-g`). Counts are given by how many make one g or one °/s (`acc=16384lsb,gyro=131lsb`), and samples that
+/// are only numbered by their rate (`t=100Hz`).
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Units {
-    /// Of the accelerometer.
+    /// The unit of the accelerometer.
     pub acceleration: Option<Unit>,
-    /// Of the gyroscope.
+    /// The unit of the gyroscope.
     pub rate: Option<Unit>,
-    /// Of time.
+    /// The unit of time, or the sampling rate.
     pub time: Option<TimeUnit>,
-    /// Of the columns of other sensors.
+    /// The units of the columns of other sensors.
     others: Vec<(&'static str, Unit)>,
 }
 
 impl Units {
-    /// The unit that the column of this name is said to have.
+    /// The unit that was stated for the column of this name.
     pub(crate) fn of(&self, name: &str) -> Option<Unit> {
         match (ROLES.iter().position(|&role| role == name), &self.time) {
             (Some(0), Some(TimeUnit::Clock(unit))) => Some(unit.clone()),
@@ -139,12 +141,12 @@ impl Units {
     }
 }
 
-/// How time is told.
+/// How time is given.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TimeUnit {
-    /// By a clock of this unit.
+    /// A clock that counts in this unit.
     Clock(Unit),
-    /// By counting samples of this rate, Hz.
+    /// A counter of samples at this rate, Hz.
     Rate(f64),
 }
 
@@ -201,7 +203,7 @@ fn time_unit(text: &str) -> Option<TimeUnit> {
     (unit.scale > 0.0).then_some(TimeUnit::Clock(unit))
 }
 
-/// The pairs of `a=b,c=d`.
+/// Splits `a=b,c=d` into pairs.
 fn pairs<'a>(text: &'a str, example: &str) -> Result<Vec<(&'a str, &'a str)>, Error> {
     let wrong = |part: &str| {
         Error::options(format!("expected pairs such as {example}, found {}", quoted(part)))

@@ -1,20 +1,20 @@
-//! What a log is made of, and its damage is counted in.
+//! The parts that a log consists of, in which its damage is counted.
 
-/// What a log is made of.
+/// The kind of part that a log consists of.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Part {
-    /// Lines of a text.
+    /// Lines of a text file.
     #[default]
     Line,
-    /// Lines of one of the texts in a file, by its name.
+    /// Lines of one of several texts in a file, which is named.
     LineOf(&'static str),
-    /// Records of a file that is no text.
+    /// Records of a binary file.
     Record,
 }
 
 impl Part {
-    /// One of them, or several.
+    /// The noun for `count` of these parts, in the singular or plural.
     pub(crate) fn noun(self, count: usize) -> &'static str {
         match (self, count) {
             (Self::Record, 1) => "record",
@@ -24,7 +24,7 @@ impl Part {
         }
     }
 
-    /// Where something stands: `line 7`, `lines 7, 8 of Gyroscope.csv`, `record 9`.
+    /// The position of parts, in words: `line 7`, `lines 7, 8 of Gyroscope.csv`, `record 9`.
     pub(crate) fn place(self, numbers: &[usize], more: bool) -> String {
         let list: Vec<_> = numbers.iter().map(usize::to_string).collect();
         let dots = if more { ", …" } else { "" };
@@ -36,7 +36,7 @@ impl Part {
         }
     }
 
-    /// The one before.
+    /// The phrase for the preceding part.
     pub(crate) fn before(self) -> &'static str {
         match self {
             Self::Record => "the record before",

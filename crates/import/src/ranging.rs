@@ -1,17 +1,17 @@
-//! Logs of two-way ranging as radios and their programs write them: a line of text for the ranges to all anchors, or a
-//! column an anchor. A table with a row a range (`t,anchor,range`) is a [`crate::NamedTable`].
+//! Logs of two-way ranging as radios and their programs write them: a line of text for the ranges to all anchors, or
+//! one column for each anchor. A table with one row for each range (`t,anchor,range`) is a [`crate::NamedTable`].
 //!
 //! | | |
 //! |---|---|
 //! | TREK1000, `DecaRanging` | `mc 0f 00000663 000005a3 00000512 000004cb 095f c1 00024c24 a0:0`: mm, and ms of the tag's clock, in hexadecimal (TREK1000 User Manual, 8.1.1). `mr` is read if there is no `mc`, `ma` is between anchors |
 //! | Qorvo MDEK1001 | `les`: `1151[5.00,8.00,2.25]=6.48 … est[…]`; `lec`: `DIST,4,AN0,1151,5.00,8.00,2.25,6.44,…,POS,…` (DWM1001 Firmware API Guide, shell commands): m |
 //! | Makerfabs `MaUWB` | `AT+RANGE=tid:1,mask:0F,seq:128,range:(997,1321,911,738,0,0,0,0),ancid:(0,1,2,3,-1,-1,-1,-1)` (AT command manual): cm |
-//! | six stamps an exchange | `t,anchor,t1,t2,t3,t4,t5,t6`, perhaps with `rx_dbm`: poll, response and final message, each sent and received, as the counter of 40 bits has it, in decimal or as `0x…` |
+//! | six timestamps per exchange | `t,anchor,t1,t2,t3,t4,t5,t6`, perhaps with `rx_dbm`: poll, response and final message, each sent and received, as the counter of 40 bits has it, in decimal or as `0x…` |
 //! | differences of distances | `t,anchor_a,anchor_b,difference`; Crazyflie's client: `Timestamp,tdoa2.d7-0,tdoa2.d0-1,…` |
-//! | a column an anchor | `t,d0,d1,…`, `time_ms,range_A1 [cm],…`; the log of Crazyflie's client: `Timestamp,ranging.distance0,…` |
+//! | one column per anchor | `t,d0,d1,…`, `time_ms,range_A1 [cm],…`; the log of Crazyflie's client: `Timestamp,ranging.distance0,…` |
 //!
-//! A line may begin with a time: a number, a date, or a time of day (`12:00:00.250 -> AT+RANGE=…`). A range of zero is
-//! none.
+//! A line may begin with a time: a number, a date, or a time of day (`12:00:00.250 -> AT+RANGE=…`). A range of zero
+//! means none.
 
 mod labels;
 mod lines;
@@ -26,57 +26,57 @@ use crate::text::Text;
 
 pub use self::labels::Labels;
 
-/// The usual time between two moments of a tag is one of these, s.
+/// The usual time between two ranging epochs of a tag lies in this interval, s.
 const USUAL_STEP: std::ops::RangeInclusive<f64> = 2e-3..=2.0;
 
-/// Beyond any clock, µs: three centuries.
+/// The latest plausible time, µs: three centuries, beyond any clock.
 const LATEST_US: u64 = 10_000_000_000_000_000;
 
-/// A range.
+/// A range to an anchor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
-    /// Time of the log's clock, µs.
+    /// Time on the log's clock, µs.
     pub time_us: i64,
-    /// The anchor's place in the list.
+    /// The index of the anchor in the list.
     pub anchor: usize,
-    /// m
+    /// The range, m.
     pub metres: f64,
 }
 
-/// Six stamps of a poll, a response and a final message, each sent and received.
+/// The six timestamps of a two-way ranging exchange: of a poll, a response and a final message, each sent and received.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Exchange {
-    /// Time of the log's clock, µs.
+    /// Time on the log's clock, µs.
     pub time_us: i64,
-    /// The anchor's place in the list.
+    /// The index of the anchor in the list.
     pub anchor: usize,
-    /// Readings of the two radios' counters, below 2⁴⁰.
+    /// The timestamps, as readings of the two radios' counters, below 2⁴⁰.
     pub stamps: [u64; 6],
-    /// The level at which the radio received it, as it estimates it, dBm.
+    /// The received level as the radio estimates it, dBm.
     pub level_dbm: Option<f64>,
 }
 
-/// By how much the second of two anchors is farther than the first.
+/// A difference of distances: how much farther the second of two anchors is than the first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Difference {
-    /// Time of the log's clock, µs.
+    /// Time on the log's clock, µs.
     pub time_us: i64,
-    /// The anchors' places in the list.
+    /// The indices of the two anchors in the list.
     pub anchors: [usize; 2],
-    /// m
+    /// The difference, m.
     pub metres: f64,
 }
 
-/// A log of ranges, of exchanges that are not ranges yet, or of differences.
+/// A log of ranges, of timestamps from which ranges are still to be computed, or of differences.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ranging {
-    /// In the order of the log.
+    /// The ranges, in the order of the log.
     pub ranges: Vec<Range>,
-    /// In the order of the log.
+    /// The exchanges, in the order of the log.
     pub exchanges: Vec<Exchange>,
-    /// In the order of the log.
+    /// The differences, in the order of the log.
     pub differences: Vec<Difference>,
-    /// How many of them are of anchors that are not in the list; they are left out.
+    /// The number of measurements that refer to anchors outside the list; they are left out.
     pub unlisted: usize,
     /// What was recognised, in one line.
     pub conclusion: String,
@@ -84,15 +84,15 @@ pub struct Ranging {
     pub damage: Damage,
 }
 
-/// Ranges to anchors as the log calls them.
+/// Measurements to anchors under the log's own names for them.
 #[derive(Debug, Default)]
 struct Found {
     labels: Labels,
-    /// Time in µs, label, m.
+    /// The ranges: time in µs, label, range in m.
     ranges: Vec<(i64, usize, f64)>,
-    /// Time in µs, label, stamps, level in dBm.
+    /// The exchanges: time in µs, label, timestamps, level in dBm.
     exchanges: Vec<(i64, usize, [u64; 6], Option<f64>)>,
-    /// Time in µs, labels, m.
+    /// The differences: time in µs, labels, difference in m.
     differences: Vec<(i64, [usize; 2], f64)>,
 }
 
@@ -115,7 +115,7 @@ impl Found {
         self.differences.push((time_us, labels, metres));
     }
 
-    /// Times of all, µs.
+    /// The times of all measurements, µs.
     fn times(&self) -> impl Iterator<Item = i64> {
         let exchanges = self.exchanges.iter().map(|(time_us, ..)| *time_us);
         let differences = self.differences.iter().map(|(time_us, ..)| *time_us);
@@ -123,7 +123,7 @@ impl Found {
     }
 }
 
-/// Reads a log of ranges to `anchors`; none if it is of none of these forms.
+/// Reads a log of ranges to `anchors`; `None` if it is of none of these forms.
 ///
 /// # Errors
 /// What was expected and what was found, and which option decides where the log does not tell.
@@ -180,7 +180,7 @@ mod tests {
         read.ok_or_else(|| "nothing known".to_owned())
     }
 
-    /// Two moments, 100 ms apart, of ranges 1.635 and 1.443 m, then 1.4 and 1.2 m.
+    /// Fails unless the log holds two epochs, 100 ms apart, with ranges of 1.635 and 1.443 m, then 1.4 and 1.2 m.
     fn assert_read(text: &str, anchors: &[&str], options: &Options) {
         let read = ranges(text, anchors, options).unwrap_or_else(|error| panic!("{text}: {error}"));
         let found: Vec<_> = read.ranges.iter().map(|range| (range.anchor, range.metres)).collect();

@@ -1,15 +1,15 @@
-//! The fields of a line one after the other, without a list of them.
+//! Iterates over the fields of a line without collecting them.
 
 use crate::dialect::{Dialect, Separator};
 use crate::number;
 
-/// What is left of a line.
+/// The rest of a line.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Row<'a> {
     dialect: Dialect,
     /// The line without surrounding blanks.
     line: &'a [u8],
-    /// Where the next field begins.
+    /// The position where the next field begins.
     at: usize,
     /// Whether another field follows, which may be empty.
     has_more: bool,
@@ -21,13 +21,13 @@ impl<'a> Row<'a> {
         Self { dialect, line, at: 0, has_more: true }
     }
 
-    /// Whether nothing is left, but perhaps a separator that ended the line.
+    /// Whether nothing is left except perhaps a separator at the end of the line.
     pub(crate) const fn is_at_end(&self) -> bool {
         !self.has_more || self.at == self.line.len()
     }
 
-    /// The next number as [`Dialect::number`] would read it, if the dialect has decimal points and no quotation mark
-    /// stands here; otherwise nothing is taken.
+    /// The next number as [`Dialect::number`] would read it. Nothing is consumed if the dialect has decimal commas or a
+    /// quotation mark stands here.
     #[inline(always)]
     pub(crate) fn number(&mut self) -> Option<f64> {
         if self.dialect.decimal_comma || !self.has_more {
@@ -39,8 +39,8 @@ impl<'a> Row<'a> {
         self.go_behind(begin + length).then_some(number)
     }
 
-    /// The next field without surrounding blanks; none if there is none, or if quotation marks stand in it: these may hold
-    /// a separator.
+    /// The next field without surrounding blanks; `None` if there is none, or if it contains a quotation mark, because
+    /// quoted text may hold a separator.
     pub(crate) fn field(&mut self) -> Option<&'a [u8]> {
         let rest = self.line.get(self.at..).filter(|_| self.has_more)?;
         let ends = |byte: &u8| *byte == b'"' || self.dialect.separates(*byte);
@@ -48,7 +48,7 @@ impl<'a> Row<'a> {
         self.go_behind(self.at + field.len()).then(|| field.trim_ascii())
     }
 
-    /// Goes behind the separator at the end of a field, or to the end of the line; not if something else stands there.
+    /// Advances behind the separator at the end of a field, or to the end of the line; not if anything else follows.
     #[inline(always)]
     fn go_behind(&mut self, end: usize) -> bool {
         let are_blanks = self.dialect.separator == Separator::Blanks;

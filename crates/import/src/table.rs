@@ -11,40 +11,40 @@ use crate::text::{Line, Text};
 /// A column of a [`Table`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
-    /// As in the header, with a unit if it stands there; without a header its number, from 1.
+    /// The name in the header, including a unit that stands there; without a header, the column's number, from 1.
     pub name: String,
-    /// As in a line of units under the header.
+    /// The unit from a line of units below the header.
     pub unit: Option<String>,
-    /// What it holds.
+    /// What the column holds.
     pub kind: Kind,
-    /// A value for each row, not a number where there is none; nothing if it holds words.
+    /// One value for each row, NaN where it is missing; empty if the column holds words.
     pub values: Vec<f64>,
 }
 
 /// A table of numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// How it is written, if it is text.
+    /// How the table is written, if it is text.
     pub dialect: Option<Dialect>,
     /// The line of the header, if there is one.
     pub header: Option<usize>,
-    /// The words right above the first row that are no header, as there are more or fewer of them than columns; and
-    /// their line.
+    /// The line number and the words directly above the first row that are not a header, because there are more or
+    /// fewer of them than columns.
     pub other_header: Option<(usize, Vec<String>)>,
     /// The columns, in the order of the log.
     pub columns: Vec<Column>,
     /// The line or record of each row.
     pub lines: Vec<usize>,
-    /// How many lines above the rows are neither header nor comment.
+    /// The number of lines above the rows that are neither header nor comment.
     pub above: usize,
-    /// How many lines are comments.
+    /// The number of comment lines.
     pub comments: usize,
-    /// The lines that are not rows of as many fields as there are columns, or the records that cannot be read.
+    /// The lines whose number of fields differs from the number of columns, or the records that cannot be read.
     pub damage: Damage,
 }
 
 impl Table {
-    /// Reads a table: comments are skipped, damaged lines are skipped and counted.
+    /// Reads a table. Comments are skipped; damaged lines are skipped and counted.
     ///
     /// # Errors
     /// [`Error::Log`] if there is no table of numbers.
@@ -52,7 +52,7 @@ impl Table {
         let layout = Layout::find(text)?;
         let dialect = layout.dialect;
         let width = layout.names.len();
-        // Each row takes two bytes a column, at least.
+        // Each row takes at least two bytes a column.
         let rows = (text.breaks() + 1).min(text.len() / (2 * width) + 1);
         let columns = layout.names.into_iter().zip(layout.units).zip(layout.kinds);
         let columns: Vec<_> = columns
@@ -75,8 +75,7 @@ impl Table {
         Ok(table)
     }
 
-    /// A table of columns that were decoded from something else than text: their names and values, and the record of
-    /// each row.
+    /// A table of columns decoded from a binary format: their names and values, and the record of each row.
     pub(crate) fn decoded(
         columns: impl IntoIterator<Item = (String, Vec<f64>)>,
         lines: Vec<usize>,
@@ -95,7 +94,7 @@ impl Table {
         }
     }
 
-    /// Whether its columns have names; those of a text without a header only have numbers.
+    /// Whether the columns have names; those of a text without a header only have numbers.
     pub fn has_names(&self) -> bool {
         self.header.is_some() || self.dialect.is_none()
     }
@@ -131,7 +130,7 @@ impl Table {
                 Err(found) => torn = Some((line, found)),
             }
         }
-        // What is torn at the very end was cut off.
+        // A damaged line at the very end was cut off.
         if let Some((torn, found)) = torn {
             let fault = if found < width { Fault::Cut } else { Fault::Torn };
             self.leave_out(fault, torn, found);
@@ -146,10 +145,10 @@ impl Table {
         });
     }
 
-    /// Reads a line's fields into a row.
+    /// Reads the fields of a line into a row.
     ///
     /// # Errors
-    /// The number of fields, if it is not that of the columns.
+    /// The number of fields, if it differs from the number of columns.
     fn read_row(&self, dialect: Dialect, line: &[u8], values: &mut [f64]) -> Result<(), usize> {
         let mut row = Row::new(dialect, line);
         for (column, value) in self.columns.iter().zip(values.iter_mut()) {
@@ -162,11 +161,11 @@ impl Table {
                 },
             };
         }
-        // A separator may end the line.
+        // A line may end with a separator.
         if row.is_at_end() { Ok(()) } else { self.read_fields(dialect, line, values) }
     }
 
-    /// As [`Self::read_row`], for fields in quotation marks, and where the number of fields is another one.
+    /// Slow path of [`Self::read_row`], for quoted fields and lines with another number of fields.
     fn read_fields(&self, dialect: Dialect, line: &[u8], row: &mut [f64]) -> Result<(), usize> {
         let fields = dialect.fields(line);
         let width = self.columns.len();

@@ -1,14 +1,14 @@
-//! Bytes as lines of text, whatever the encoding and the line breaks.
+//! Splits bytes into lines of text, whatever the encoding and the line breaks.
 
 use std::borrow::Cow;
 
 use crate::Error;
 
-/// How much of a log is looked at to recognise its encoding.
+/// The number of bytes that are looked at to recognise the encoding.
 const BEGINNING: usize = 4096;
 
-/// A log's text in memory, as bytes: a line of rubbish in a log is no reason to refuse the others, so nothing needs to be
-/// UTF-8 but the names in a header.
+/// A log's text in memory, as bytes: a garbled line is no reason to refuse the others, so only the names in a header
+/// need to be UTF-8.
 #[derive(Debug, Clone)]
 pub struct Text<'a> {
     bytes: Cow<'a, [u8]>,
@@ -16,8 +16,8 @@ pub struct Text<'a> {
 }
 
 impl<'a> Text<'a> {
-    /// Takes a file's bytes: UTF-8 or another encoding that holds ASCII, or UTF-16 of either byte order. A byte order mark
-    /// is dropped. Lines end with `\n`, `\r\n`, or with `\r` if there is hardly a `\n`.
+    /// Takes the bytes of a file: UTF-8 or another superset of ASCII, or UTF-16 of either byte order. A byte order mark
+    /// is dropped. Lines end with `\n`, `\r\n`, or with `\r` if there are hardly any `\n`.
     ///
     /// # Errors
     /// [`Error::Log`] if there is no text at all.
@@ -56,22 +56,22 @@ impl<'a> Text<'a> {
         all.filter(|line| !line.bytes.is_empty())
     }
 
-    /// The line of a number, without surrounding blanks; nothing beyond the last one.
+    /// The line of this number, without surrounding blanks; empty beyond the last one.
     pub fn line(&self, number: usize) -> &[u8] {
         self.lines().find(|line| line.number == number).map_or(b"", |line| line.bytes)
     }
 
-    /// How many line breaks there are.
+    /// The number of line breaks.
     pub(crate) fn breaks(&self) -> usize {
         memchr::memchr_iter(self.line_break, &self.bytes).count()
     }
 
-    /// How many bytes there are.
+    /// The length, bytes.
     pub(crate) fn len(&self) -> usize {
         self.bytes.len()
     }
 
-    /// Whether the last line is complete; that of a log which was cut off is not.
+    /// Whether the text ends with a line break, so that the last line is not cut off.
     pub fn ends_with_line_break(&self) -> bool {
         self.bytes.last() == Some(&self.line_break)
     }
@@ -80,13 +80,13 @@ impl<'a> Text<'a> {
 /// A line of a [`Text`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Line<'a> {
-    /// From 1.
+    /// The number of the line, from 1.
     pub number: usize,
-    /// Without surrounding blanks and line break.
+    /// The bytes of the line, without surrounding blanks and line break.
     pub bytes: &'a [u8],
 }
 
-/// Where the zeros stand in a text of UTF-16 that is mostly ASCII: 1 for little, 0 for big endian.
+/// The position of the zero bytes in UTF-16 text that is mostly ASCII: 1 for little endian, 0 for big endian.
 fn zeros_of_utf16(bytes: &[u8]) -> Option<usize> {
     let beginning = &bytes[..bytes.len().min(BEGINNING)];
     let pairs = beginning.len() / 2;
@@ -108,7 +108,7 @@ fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// Bytes as letters: UTF-8, or else Latin-1, in which older programs write ° and ².
+/// Decodes bytes as UTF-8, or else as Latin-1, in which older programs write ° and ².
 pub(crate) fn letters(bytes: &[u8]) -> String {
     match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),

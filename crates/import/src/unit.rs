@@ -1,4 +1,4 @@
-//! Units of acceleration, angular rate and time, and how people write them.
+//! Units of acceleration, angular rate and time, and the ways in which they are written.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -6,7 +6,7 @@ use std::fmt;
 /// Standard gravity, m/s².
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
-/// What is measured.
+/// A measured quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// Specific force, in m/s².
@@ -32,9 +32,9 @@ pub enum Quantity {
 /// A unit of one [`Quantity`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unit {
-    /// How much it is in the quantity's SI unit.
+    /// The factor that converts a value to the quantity's SI unit.
     pub scale: f64,
-    /// How it is written.
+    /// The symbol of the unit.
     pub name: String,
 }
 
@@ -44,7 +44,8 @@ impl fmt::Display for Unit {
     }
 }
 
-/// Ways to write a unit, in lower case without blanks and powers, its value and the way in which it is told.
+/// The ways to write a unit (in lower case, without blanks and powers), its scale, and the symbol under which it is
+/// reported.
 type Known = (&'static [&'static str], f64, &'static str);
 
 const ACCELERATION: [Known; 6] = [
@@ -136,7 +137,7 @@ impl Unit {
         Self { scale, name: name.into() }
     }
 
-    /// Reads a unit as it stands in a header: `m/s^2`, `deg/s`, `ms`.
+    /// Parses a unit as written in a header: `m/s^2`, `deg/s`, `ms`.
     pub fn read(quantity: Quantity, text: &str) -> Option<Self> {
         let text = simplified(text);
         let (_, scale, name) =
@@ -144,8 +145,8 @@ impl Unit {
         Some(Self::new(*scale, *name))
     }
 
-    /// Reads a unit with a factor before it, as options say it: `-g`, `0.07deg/s`, `131lsb` for 131 counts a degree
-    /// per second, `16384lsb` for 16384 counts a g.
+    /// Parses a unit with an optional factor, as options give it: `-g`, `0.07deg/s`, `131lsb` for 131 counts per °/s,
+    /// `16384lsb` for 16384 counts per g.
     pub fn read_scaled(quantity: Quantity, text: &str) -> Option<Self> {
         let text = text.trim();
         let (factor, rest) = match fast_float2::parse_partial::<f64, _>(text) {
@@ -168,7 +169,7 @@ impl Unit {
     }
 }
 
-/// The unit of a sensor that gives so many counts a g, or a °/s.
+/// The unit of a sensor with `each` counts per g, or per °/s.
 pub(crate) fn counts(quantity: Quantity, each: f64) -> Option<Unit> {
     match quantity {
         Quantity::Acceleration => {
@@ -193,7 +194,7 @@ fn table(quantity: Quantity) -> &'static [Known] {
     }
 }
 
-/// Lower case, without blanks, powers and brackets; `°` is `deg`, `µ` is `u`.
+/// The text in lower case, without blanks, power signs and brackets; `°` becomes `deg`, `µ` becomes `u`.
 fn simplified(text: &str) -> String {
     let mut simple = String::new();
     for letter in text.trim().chars() {

@@ -4,20 +4,20 @@ use crate::{Error, Poses, Triad};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// How much of an accelerometer was found.
+/// The parameters of an accelerometer that were determined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum AccelerometerModel {
-    /// Three offsets and three scales: from six poses, an axis up and down each. The axes are taken to be at right angles.
+    /// Three offsets and three scales: from six poses, each axis up and down once. The axes are assumed orthogonal.
     OffsetAndScale,
-    /// Three misalignments as well: from nine poses and more, of which some stand on edges.
+    /// Offsets, scales and three misalignments: from nine or more poses, of which some stand on edges.
     Full,
 }
 
 impl AccelerometerModel {
-    /// How many parameters it has, and how many poses it takes.
+    /// The number of parameters, which is also the number of poses required.
     pub const fn unknowns(self) -> u16 {
         match self {
             Self::OffsetAndScale => 6,
@@ -26,56 +26,58 @@ impl AccelerometerModel {
     }
 }
 
-/// What an accelerometer measures wrong, as the poses show it.
+/// The errors of an accelerometer, determined from poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct AccelerometerFit<T: Scalar> {
-    /// Offset (m/s²) and matrix, upper triangular.
+    /// The offset (m/s²) and the matrix, upper triangular.
     pub triad: Triad<T>,
-    /// Which of its parameters were found; the others are as in a perfect sensor.
+    /// The parameters that were determined; the others are as in a perfect sensor.
     pub model: AccelerometerModel,
-    /// Standard deviations of the offset (m/s²).
+    /// The standard deviations of the offset (m/s²).
     pub offset_sigma: [T; 3],
-    /// Standard deviations of the matrix, row by row; none of what was not looked for.
+    /// The standard deviations of the matrix, row by row; `None` for entries that were not determined.
     pub matrix_sigma: [[Option<T>; 3]; 3],
-    /// How far the corrected poses are from gravity: root mean square (m/s²).
+    /// The root mean square deviation of the corrected poses from gravity (m/s²).
     pub residual: T,
 }
 
-/// Offsets, scales, misalignments xy, xz and yz.
+/// The number of unknowns: offsets, scales, misalignments xy, xz and yz.
 const UNKNOWNS: usize = 9;
 const OFFSET_AND_SCALE: [bool; UNKNOWNS] =
     [true, true, true, true, true, true, false, false, false];
-/// So many times the noise of a pose is the most that a parameter may be uncertain by, in units of gravity: beyond, the
-/// poses are too much alike.
+/// The largest uncertainty of a parameter, as a multiple of a pose's noise, in units of gravity: beyond it the poses
+/// are too similar.
 const MOST_AMPLIFICATION: f64 = 10.0;
-/// Beyond these a sensor is broken, or no accelerometer: scale, …
+/// The limits of the scale factors: beyond them a sensor is broken, or no accelerometer.
 const SCALES: [f64; 2] = [0.5, 2.0];
-/// … offset (g), misalignment (rad), …
+/// The largest offset (g) and misalignment (rad) of a working sensor.
 const FARTHEST: f64 = 0.5;
-/// … and what is left (g).
+/// The largest residual (g) of a working sensor.
 const MOST_LEFT: f64 = 0.05;
 const STEPS: u16 = 30;
 
 impl<T: Scalar, const N: usize> Poses<T, N> {
-    /// What the accelerometer measures wrong: corrected, every pose shows `gravity` (m/s²), whatever its direction (Tedaldi,
-    /// Pretto & Menegatti 2014, with the norm itself instead of its square, so that all residuals have the noise of a
-    /// pose).
+    /// Determines the errors of the accelerometer such that every corrected pose shows `gravity` (m/s²), whatever its
+    /// direction.
     ///
-    /// `noise` is the standard deviation of a pose's mean (m/s²), with all that a calibration cannot explain: 0.01 suits
-    /// consumer sensors, whose offset moves by a mg when they are turned. Standard deviations are from it, or from
-    /// what is left if that is more. From nine poses on, misalignments are looked for; if the poses do not tell them, or are
-    /// fewer, offset and scale alone. The fit is Levenberg and Marquardt's.
+    /// The method is that of Tedaldi, Pretto & Menegatti (2014), with the norm itself instead of its square, so that
+    /// all residuals have the noise of a pose.
+    ///
+    /// `noise` is the standard deviation of a pose's mean (m/s²), including everything that a calibration cannot
+    /// explain: 0.01 suits consumer sensors, whose offset changes by a mg when they are turned. Standard deviations
+    /// follow from it, or from the residuals if they are larger. From nine poses on, misalignments are estimated, too;
+    /// if the poses do not determine them, or are fewer, only offset and scale. The fit is by Levenberg–Marquardt.
     ///
     /// # Errors
-    /// [`Error::TooFew`] below six poses, [`Error::NotObservable`] if they are too much alike,
-    /// [`Error::Inconsistent`] if no accelerometer measures so, [`Error::NotPositive`] of gravity or noise.
+    /// [`Error::TooFew`] below six poses, [`Error::NotObservable`] if they are too similar, [`Error::Inconsistent`] if
+    /// no working accelerometer explains them, [`Error::NotPositive`] for gravity or noise.
     pub fn accelerometer(&self, gravity: T, noise: T) -> Result<AccelerometerFit<T>, Error> {
         let is_positive = |x: T| x.is_finite() && x > T::ZERO;
         if !(is_positive(gravity) && is_positive(noise)) {
             return Err(Error::NotPositive);
         }
-        // No more than 65 535 poses are held: they would be a megabyte.
+        // At most 65 535 poses are counted: they would be a megabyte.
         let found = self.poses.len().min(usize::from(u16::MAX)) as u16;
         let needed = AccelerometerModel::OffsetAndScale.unknowns();
         if found < needed {
@@ -99,7 +101,7 @@ impl<T: Scalar, const N: usize> Poses<T, N> {
             AccelerometerModel::OffsetAndScale => OFFSET_AND_SCALE,
             AccelerometerModel::Full => [true; UNKNOWNS],
         };
-        // Where the poses do not tell, the parameters go astray: that is asked before them.
+        // Parameters that the poses do not determine diverge, so observability is checked first.
         let (start, _) = self.equations(&Parameters::perfect(), gravity);
         observed(&start, &active)?;
         let parameters = self.descend(&active, gravity)?;
@@ -108,7 +110,7 @@ impl<T: Scalar, const N: usize> Poses<T, N> {
         let gains = observed(&normal, &active)?;
         let left = normal.squares;
         let residual = (left / count).sqrt();
-        // Of squares that are finite, as are those that were observed.
+        // The squares are finite, as `observed` has checked.
         if residual > T::from_f64(MOST_LEFT) {
             return Err(Error::Inconsistent);
         }
@@ -132,7 +134,7 @@ impl<T: Scalar, const N: usize> Poses<T, N> {
         if finite { Ok(fit) } else { Err(Error::NotFinite) }
     }
 
-    /// The parameters of least squares.
+    /// Finds the least-squares parameters.
     fn descend(&self, active: &[bool; UNKNOWNS], gravity: T) -> Result<Parameters<T>, Error> {
         let mut at = Parameters::perfect();
         let (mut normal, _) = self.equations(&at, gravity);
@@ -164,7 +166,8 @@ impl<T: Scalar, const N: usize> Poses<T, N> {
         Ok(at)
     }
 
-    /// The equations of a step from these parameters, and how many there are; the squares are those of the residuals here.
+    /// The equations of a step from these parameters, and their number; the squares are those of the residuals at these
+    /// parameters.
     fn equations(&self, at: &Parameters<T>, gravity: T) -> (Normal<T, UNKNOWNS>, T) {
         let (mut normal, mut count) = (Normal::new(), T::ZERO);
         let by = gravity.divisor();
@@ -184,7 +187,7 @@ impl<T: Scalar, const N: usize> Poses<T, N> {
     }
 }
 
-/// By how much the noise of a pose is amplified in each parameter; an error if it is too much in one of them.
+/// The amplification of a pose's noise in each parameter; an error if it is too large in one of them.
 fn observed<T: Scalar>(
     normal: &Normal<T, UNKNOWNS>,
     active: &[bool; UNKNOWNS],
@@ -198,12 +201,12 @@ fn observed<T: Scalar>(
     if is_told { Ok(gains) } else { Err(Error::NotObservable) }
 }
 
-/// Parameters, the offset in units of gravity.
+/// The parameters, with the offset in units of gravity.
 #[derive(Clone, Copy)]
 struct Parameters<T> {
     offset: [T; 3],
     scale: [T; 3],
-    /// xy, xz, yz.
+    /// The misalignments xy, xz, yz.
     beside: [T; 3],
 }
 

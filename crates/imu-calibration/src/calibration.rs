@@ -3,7 +3,7 @@ use crate::matrix::{identity, times};
 use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// What three axes of a sensor measure wrong: corrected = matrix · (measured − offset).
+/// The correction of a three-axis sensor: corrected = matrix · (measured − offset).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -15,26 +15,26 @@ use nalgebra::{SMatrix, SVector};
     ))
 )]
 pub struct Triad<T: Scalar> {
-    /// What the sensor shows where there is nothing to measure, in its unit.
+    /// The reading of the sensor for zero input, in its unit.
     pub offset: SVector<T, 3>,
-    /// Scale factors on the diagonal, misalignments (rad, for small ones) beside it; without a unit.
+    /// Scale factors on the diagonal, misalignments (rad, for small ones) off it; dimensionless.
     pub matrix: SMatrix<T, 3, 3>,
 }
 
 impl<T: Scalar> Triad<T> {
-    /// The triad of a perfect sensor.
+    /// The correction of a perfect sensor.
     pub fn identity() -> Self {
         Self { offset: SVector::zeros(), matrix: SMatrix::from(identity()) }
     }
 
-    /// What the sensor should have measured, in the unit of `measured`.
+    /// Corrects a measurement, in the unit of `measured`.
     #[inline]
     pub fn apply(&self, measured: &SVector<T, 3>) -> SVector<T, 3> {
         let ([x, y, z], [ox, oy, oz]) = (*measured.as_array(), *self.offset.as_array());
         SVector::from(times(self.matrix.as_columns(), &[x - ox, y - oy, z - oz]))
     }
 
-    /// Refuses what is not finite.
+    /// Rejects a triad that is not finite.
     pub(crate) fn check(&self) -> Result<(), Error> {
         let finite = T::all_finite(self.offset.as_array())
             && T::all_finite(self.matrix.as_columns().as_flattened());
@@ -48,10 +48,10 @@ impl<T: Scalar> Default for Triad<T> {
     }
 }
 
-/// What an inertial sensor measures wrong.
+/// The calibration of an inertial sensor.
 ///
-/// The corrected frame is the accelerometer's: its x axis is x, its y axis lies in the plane of x and y (Tedaldi
-/// et al. 2014). The gyroscope's axes are turned into it.
+/// The corrected frame is that of the accelerometer: its x axis is the sensor's, its y axis lies in the plane of the
+/// sensor's x and y (Tedaldi et al. 2014). The gyroscope's axes are rotated into it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -70,13 +70,12 @@ pub struct Calibration<T: Scalar> {
 }
 
 impl<T: Scalar> Calibration<T> {
-    /// That of a perfect sensor.
+    /// The calibration of a perfect sensor.
     pub fn identity() -> Self {
         Self { accelerometer: Triad::identity(), gyroscope: Triad::identity() }
     }
 
-    /// The specific force (m/s²) and the angular rate (rad/s) that the sensor should have measured, both in its
-    /// frame.
+    /// Corrects a specific force (m/s²) and an angular rate (rad/s), both in the sensor's frame.
     #[inline]
     pub fn apply(
         &self,

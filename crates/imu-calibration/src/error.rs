@@ -1,29 +1,29 @@
 use core::fmt;
 
-/// Reason for which there is no calibration, or a sample was refused. Nothing was changed.
+/// The reason why there is no calibration, or why a sample was refused. Nothing is changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Error {
-    /// A number is NaN, infinite or on a rail of fixed point.
+    /// A number is NaN, infinite or at the limit of a fixed-point type.
     NotFinite,
-    /// A gravity, a noise, a radius or a scale that must be positive is not.
+    /// A gravity, a noise, a radius or a scale is not positive.
     NotPositive,
-    /// There is no place for another pose, or a sum for another sample.
+    /// There is no room for another pose, or the count of samples is exhausted.
     Full,
-    /// A pose without samples, or one in which nothing shows where up is.
+    /// A pose has no samples, or no direction of gravity.
     Empty,
-    /// Fewer poses, turns or samples than unknowns.
+    /// There are fewer poses, turns or samples than unknowns.
     TooFew {
-        /// How many there are.
+        /// The number available.
         found: u16,
-        /// How many it takes.
+        /// The number required.
         needed: u16,
     },
-    /// There are enough, but they are too much alike: what is asked for cannot be told from them.
+    /// There are enough, but they are too similar to determine the unknowns.
     NotObservable,
-    /// No calibration of a sensor that works explains what was measured.
+    /// No calibration of a working sensor explains the measurements.
     Inconsistent,
 }
 

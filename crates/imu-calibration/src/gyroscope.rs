@@ -4,46 +4,48 @@ use crate::{Error, Triad, Turn};
 use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// How much of a gyroscope was found beside its bias.
+/// The parameters of a gyroscope, besides its bias, that were determined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum GyroscopeModel {
-    /// The scales of some axes: those about which it was turned.
+    /// The scales of the axes about which it was turned.
     Scale,
-    /// All scales and misalignments, those to the accelerometer included.
+    /// All scales and misalignments, including those to the accelerometer.
     Full,
 }
 
-/// What a gyroscope measures wrong, as the turns between poses show it.
+/// The errors of a gyroscope, determined from turns between poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GyroscopeFit<T: Scalar> {
-    /// Bias (rad/s), as it was assumed, and matrix.
+    /// The bias (rad/s), as it was assumed, and the matrix.
     pub triad: Triad<T>,
-    /// Which entries of the matrix were found; the others are as assumed.
+    /// The entries of the matrix that were determined; the others are as assumed.
     pub model: GyroscopeModel,
-    /// Standard deviations of the matrix, row by row; none of what the turns do not tell.
+    /// The standard deviations of the matrix, row by row; `None` for entries that the turns do not determine.
     pub matrix_sigma: [[Option<T>; 3]; 3],
-    /// How far the turns carry gravity astray: root mean square (rad).
+    /// The root mean square error of gravity's direction after the turns (rad).
     pub residual: T,
 }
 
-/// Entries of the matrix, column by column.
+/// The number of unknowns: the entries of the matrix, column by column.
 const UNKNOWNS: usize = 9;
-/// So many times the noise of a turn is the most that an entry may be uncertain by: beyond, no turn tells it.
+/// The largest uncertainty of an entry, as a multiple of a turn's noise: beyond it no turn determines the entry.
 const MOST_AMPLIFICATION: f64 = 3.0;
-/// A turn that carries gravity so far astray (the sine of 30°) is not this gyroscope's: swapped axes, another unit.
+/// The largest error of gravity's direction after a turn (the sine of 30°): a larger one shows swapped axes, or another
+/// unit.
 const MOST_ASTRAY: f64 = 0.5;
-/// Beyond this a correction of the matrix is none of a gyroscope that works.
+/// The largest correction of the matrix for a working gyroscope.
 const LARGEST: f64 = 0.5;
 
-/// A gyroscope's scales and misalignments, from turns between poses: the turn must carry gravity's direction at its end to
-/// that at its beginning (Tedaldi, Pretto & Menegatti 2014).
+/// The estimation of a gyroscope's scales and misalignments from turns between poses: a turn must carry gravity's
+/// direction at its end to that at its beginning (Tedaldi, Pretto & Menegatti 2014).
 ///
-/// Sums of fixed size, whatever the number of turns. They are of first order in the correction: with a matrix wrong by
-/// 3 % its entries come out within 0.4 %. Turns integrated again with the result lead to the rest.
+/// It keeps sums of fixed size, whatever the number of turns. They are of first order in the correction: for a matrix
+/// that is wrong by 3 % the entries come out within 0.4 %. Integrating the turns again with the result removes the
+/// rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -54,7 +56,7 @@ pub struct Gyroscope<T: Scalar> {
 }
 
 impl<T: Scalar> Gyroscope<T> {
-    /// Begins with what the turns are integrated with: [`Turn::new`].
+    /// Begins with the triad with which the turns are integrated: [`Turn::new`].
     ///
     /// # Errors
     /// [`Error::NotFinite`].
@@ -63,11 +65,11 @@ impl<T: Scalar> Gyroscope<T> {
         Ok(Self { assumed, normal: Normal::new(), turns: T::ZERO })
     }
 
-    /// Takes in a turn and the specific forces before and after it, both calibrated (any unit).
+    /// Adds a turn and the specific forces before and after it, both calibrated (any unit).
     ///
     /// # Errors
-    /// [`Error::Empty`] of a force without direction, [`Error::Inconsistent`] if the turn carries gravity astray by 30° or
-    /// more, [`Error::NotFinite`], [`Error::Full`] where the number type counts no further; nothing is changed.
+    /// [`Error::Empty`] for a force without direction, [`Error::Inconsistent`] if the turn misdirects gravity by 30° or
+    /// more, [`Error::NotFinite`], [`Error::Full`] where the number type cannot count further; nothing is changed.
     pub fn add(
         &mut self,
         turn: &Turn<T>,
@@ -78,7 +80,7 @@ impl<T: Scalar> Gyroscope<T> {
         let after = unit(after.as_array()).ok_or(Error::Empty)?;
         let carried = turn.to_beginning(&SVector::from(after));
         let carried = unit(carried.as_array()).ok_or(Error::Empty)?;
-        // What is left to turn: about an axis at right angles to gravity. Of turns about gravity itself it says nothing.
+        // The remaining turn is about an axis perpendicular to gravity. Turns about gravity itself are not observed.
         let axis = cross(&carried, &before);
         let (sine, cosine) = (T::norm(&axis), T::dot(&carried, &before));
         if !(sine <= T::from_f64(MOST_ASTRAY) && cosine > T::ZERO) {
@@ -102,13 +104,15 @@ impl<T: Scalar> Gyroscope<T> {
         Ok(())
     }
 
-    /// The matrix, as far as the turns tell it. `noise` is the standard deviation of a turn (rad), with all that a calibration
-    /// cannot explain: 0.003 suits consumer sensors turned within seconds. Standard deviations are from it, or from
-    /// what is left if that is more.
+    /// Solves for the matrix, as far as the turns determine it.
+    ///
+    /// `noise` is the standard deviation of a turn (rad), including everything that a calibration cannot explain: 0.003
+    /// suits consumer sensors turned within seconds. Standard deviations follow from it, or from the residuals if they
+    /// are larger.
     ///
     /// # Errors
-    /// [`Error::TooFew`] without a turn, [`Error::NotObservable`] if none of them tells a scale, [`Error::Inconsistent`] if no
-    /// gyroscope measures so, [`Error::NotPositive`] of the noise.
+    /// [`Error::TooFew`] without a turn, [`Error::NotObservable`] if no turn determines a scale,
+    /// [`Error::Inconsistent`] if no working gyroscope explains them, [`Error::NotPositive`] for the noise.
     pub fn solve(&self, noise: T) -> Result<GyroscopeFit<T>, Error> {
         if !(noise.is_finite() && noise > T::ZERO) {
             return Err(Error::NotPositive);
@@ -116,7 +120,7 @@ impl<T: Scalar> Gyroscope<T> {
         if self.turns < T::ONE {
             return Err(Error::TooFew { found: 0, needed: 1 });
         }
-        // A turn has two equations: that about gravity says nothing.
+        // A turn has two equations: the one about gravity carries no information.
         let is_enough = self.turns * T::TWO >= T::from_f64(UNKNOWNS as f64);
         let all = [true; UNKNOWNS];
         if is_enough
@@ -126,7 +130,7 @@ impl<T: Scalar> Gyroscope<T> {
             return self.fit(&inverse, &all, GyroscopeModel::Full, noise);
         }
         let mut active: [bool; UNKNOWNS] = core::array::from_fn(|entry| entry % 4 == 0);
-        // An axis about which nothing was turned has no weight, and none that can be divided by.
+        // An axis about which there was no turn has no weight, or none by which to divide.
         for (entry, is_active) in active.iter_mut().enumerate() {
             let weight = self.normal.a.get(entry).and_then(|line| line.get(entry));
             *is_active &= weight
@@ -142,7 +146,7 @@ impl<T: Scalar> Gyroscope<T> {
                 Some(inverse) if worst.1 <= T::from_f64(MOST_AMPLIFICATION) => {
                     return self.fit(&inverse, &active, GyroscopeModel::Scale, noise);
                 }
-                // Which of them cannot be told apart from the others is not known then: none is.
+                // It is unknown which entries cannot be separated from the others, so none is determined.
                 None => break,
                 Some(_) => active.get_mut(worst.0).map_or((), |is_active| *is_active = false),
             }
@@ -187,8 +191,8 @@ impl<T: Scalar> Gyroscope<T> {
     }
 }
 
-/// The sensitivity of a turn at right angles to where gravity was carried: a row for each axis of the frame at the beginning,
-/// an entry for each of the matrix.
+/// The sensitivity of a turn perpendicular to the carried direction of gravity: a row for each axis of the frame at the
+/// beginning, an entry for each entry of the matrix.
 fn across<T: Scalar>(turn: &Turn<T>, carried: &[T; 3]) -> [[T; UNKNOWNS]; 3] {
     let mut rows = [[T::ZERO; UNKNOWNS]; 3];
     for (entry, adds) in turn.sensitivity().as_flattened().iter().enumerate() {

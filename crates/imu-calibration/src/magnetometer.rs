@@ -4,33 +4,34 @@ use crate::{Error, Triad};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// What a magnetometer measures wrong.
+/// The errors of a magnetometer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct MagnetometerFit<T: Scalar> {
-    /// Hard iron: the offset, in the magnetometer's unit. Soft iron: the matrix, symmetric, of determinant 1; a turn of all
-    /// axes together cannot be told from a sphere.
+    /// The hard iron as offset, in the magnetometer's unit, and the soft iron as matrix, symmetric, of determinant 1: a
+    /// common rotation of all axes cannot be seen on a sphere.
     pub triad: Triad<T>,
-    /// Strength of the field that corrected samples show, in the magnetometer's unit: the mean one.
+    /// The mean field strength of corrected samples, in the magnetometer's unit.
     pub field: T,
-    /// Standard deviations of the offset, in the magnetometer's unit.
+    /// The standard deviations of the offset, in the magnetometer's unit.
     pub offset_sigma: [T; 3],
-    /// Standard deviations of the matrix.
+    /// The standard deviations of the matrix.
     pub matrix_sigma: [[T; 3]; 3],
 }
 
-/// Coefficients of the ellipsoid.
+/// The number of coefficients of the ellipsoid.
 const UNKNOWNS: usize = 9;
-/// Of directions so much alike rounding tells more than the samples do.
+/// The largest amplification of noise: for directions more similar than that, rounding outweighs the samples.
 const MOST_AMPLIFICATION: f64 = 200.0;
-/// The most that the offset may be uncertain by, as a share of the field, and the matrix.
+/// The largest standard deviation of the offset, as a share of the field, and of the matrix.
 const MOST_SIGMA: f64 = 0.05;
 
-/// An ellipsoid through the samples of a magnetometer that is turned in all directions, kept as sums of fixed size.
+/// The fit of an ellipsoid to the samples of a magnetometer that is turned in all directions, kept as sums of fixed
+/// size.
 ///
-/// Least squares of x² + y² + z² = a(x² + y² − 2z²) + b(x² + z² − 2y²) + 2c·xy + 2d·xz + 2e·yz + 2f·x + 2g·y + 2h·z + i:
-/// the quadric whose matrix has the trace 3, which an ellipsoid's always may have. It is without bias as long as the noise is
-/// small beside the field.
+/// Least squares of x² + y² + z² = a(x² + y² − 2z²) + b(x² + z² − 2y²) + 2c·xy + 2d·xz + 2e·yz + 2f·x + 2g·y + 2h·z +
+/// i: the quadric whose matrix has the trace 3, to which any ellipsoid can be scaled. It is unbiased as long as the
+/// noise is small compared with the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -42,11 +43,13 @@ pub struct Magnetometer<T: Scalar> {
 }
 
 impl<T: Scalar> Magnetometer<T> {
-    /// Begins around a `centre` with a `radius`, both in the magnetometer's unit: roughly the middle and half the width of
-    /// what it shows; half the field off does no harm. The sums are kept in these, so that an `f32` holds them.
+    /// Begins with a `centre` and a `radius`, both in the magnetometer's unit: roughly the middle and half the width of
+    /// its readings. An error of half the field does no harm.
+    ///
+    /// The sums are kept relative to these, so that an `f32` can hold them.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::NotPositive`] of the radius.
+    /// [`Error::NotFinite`], [`Error::NotPositive`] for the radius.
     pub fn new(centre: SVector<T, 3>, radius: T) -> Result<Self, Error> {
         if !T::all_finite(centre.as_array()) {
             return Err(Error::NotFinite);
@@ -58,11 +61,11 @@ impl<T: Scalar> Magnetometer<T> {
         Ok(Self { centre, radius, normal: Normal::new(), samples: T::ZERO })
     }
 
-    /// Takes in a sample, in the magnetometer's unit.
+    /// Adds a sample, in the magnetometer's unit.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] of the sample or its sums, [`Error::Full`] where the number type counts no further; nothing is
-    /// changed.
+    /// [`Error::NotFinite`] for the sample or its sums, [`Error::Full`] where the number type cannot count further;
+    /// nothing is changed.
     pub fn add(&mut self, sample: &SVector<T, 3>) -> Result<(), Error> {
         let by = self.radius.divisor();
         let ([x, y, z], [cx, cy, cz]) = (*sample.as_array(), self.centre);
@@ -92,11 +95,11 @@ impl<T: Scalar> Magnetometer<T> {
         Ok(())
     }
 
-    /// What the magnetometer measures wrong.
+    /// Solves for the errors of the magnetometer.
     ///
     /// # Errors
-    /// [`Error::TooFew`] below twelve samples, [`Error::NotObservable`] if they are no ellipsoid, or too little of one:
-    /// offset or matrix uncertain by more than 5 % of the field.
+    /// [`Error::TooFew`] below twelve samples, [`Error::NotObservable`] if they form no ellipsoid, or too small a part
+    /// of one: offset or matrix uncertain by more than 5 % of the field.
     pub fn solve(&self) -> Result<MagnetometerFit<T>, Error> {
         const FEWEST: u16 = 12;
         if self.samples < T::from_f64(f64::from(FEWEST)) {
@@ -148,7 +151,7 @@ struct Ellipsoid<T> {
     field: T,
 }
 
-/// The ellipsoid of the coefficients, if they are one.
+/// The ellipsoid of the coefficients, if they describe one.
 fn ellipsoid<T: Scalar>([a, b, c, d, e, f, g, h, i]: &[T; UNKNOWNS]) -> Option<Ellipsoid<T>> {
     let (a, b, c, d, e) = (*a, *b, *c, *d, *e);
     // xᵀ Q x − 2 lᵀ x = i.
@@ -168,7 +171,7 @@ fn ellipsoid<T: Scalar>([a, b, c, d, e, f, g, h, i]: &[T; UNKNOWNS]) -> Option<E
     // (x − o)ᵀ Q (x − o) = i + oᵀ Q o = i + lᵀ o.
     let square = *i + T::dot(&line, &offset);
     let root = root(&q)?;
-    // A matrix of determinant 1 keeps the mean of the field: |W (x − o)|² = √²·w², W = root·w, w³ = 1/det(root).
+    // A matrix of determinant 1 preserves the mean of the field: |W (x − o)|² = √²·w², W = root·w, w³ = 1/det(root).
     let third = determinant(&root).ln() * T::from_f64(-1.0 / 3.0);
     let scale = third.exp();
     let matrix = root.map(|column| column.map(|entry| entry * scale));
@@ -180,7 +183,8 @@ fn ellipsoid<T: Scalar>([a, b, c, d, e, f, g, h, i]: &[T; UNKNOWNS]) -> Option<E
     finite.then_some(Ellipsoid { offset, matrix, field })
 }
 
-/// The symmetric root of a positive definite matrix whose trace is 3: Denman & Beavers' iteration (1976).
+/// The symmetric square root of a positive definite matrix whose trace is 3, by the iteration of Denman & Beavers
+/// (1976).
 fn root<T: Scalar>(square: &Square<T>) -> Option<Square<T>> {
     const STEPS: u16 = 12;
     let (mut root, mut inverse): (Square<T>, Square<T>) = (*square, identity());
@@ -202,20 +206,20 @@ fn root<T: Scalar>(square: &Square<T>) -> Option<Square<T>> {
     is_root.then_some(root)
 }
 
-/// Standard deviations of offset and matrix, by points on either side of the solution along the columns of the covariance's
-/// root; none if one of them is no ellipsoid.
+/// The standard deviations of offset and matrix, from points on either side of the solution along the columns of the
+/// covariance's square root; `None` if one of the points is no ellipsoid.
 fn deviations<T: Scalar>(
     solution: &[T; UNKNOWNS],
     inverse: &Inverse<T, UNKNOWNS>,
     noise: T,
 ) -> Option<([T; 3], Square<T>)> {
     let (mut offset, mut matrix) = ([T::ZERO; 3], [[T::ZERO; 3]; 3]);
-    // Steps of less than this drown in rounding; the result is proportional to the step.
+    // Smaller steps drown in rounding; the result is proportional to the step.
     let step = noise.max(T::from_f64(1e-3));
     let share = noise / (step + step);
     let mut rest = *inverse;
     for pivot in 0..UNKNOWNS {
-        // Cholesky's factor, column by column.
+        // The Cholesky factor, column by column.
         let line = *rest.get(pivot)?;
         let diagonal = *line.get(pivot)?;
         if diagonal <= T::ZERO {

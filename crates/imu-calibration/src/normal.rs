@@ -2,11 +2,11 @@
 
 use kestirim_scalar::Scalar;
 
-/// A pivot of less than this share of its unknown's own weight: the others say all about it that the data do. A hundred
+/// The smallest pivot, as a share of the unknown's own weight: below it the unknown follows from the others. A hundred
 /// roundings of an `f32`.
 const LEAST_PIVOT: f64 = 1e-5;
 
-/// Aᵀ A x = Aᵀ b.
+/// The normal equations Aᵀ A x = Aᵀ b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -22,11 +22,11 @@ pub(crate) struct Normal<T, const N: usize> {
     pub(crate) a: [[T; N]; N],
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     pub(crate) b: [T; N],
-    /// bᵀ b.
+    /// The sum of squares bᵀ b.
     pub(crate) squares: T,
 }
 
-/// (Aᵀ A)⁻¹, zero for the unknowns that are held.
+/// The inverse (Aᵀ A)⁻¹, zero for the unknowns that are held.
 pub(crate) type Inverse<T, const N: usize> = [[T; N]; N];
 
 impl<T: Scalar, const N: usize> Normal<T, N> {
@@ -49,8 +49,8 @@ impl<T: Scalar, const N: usize> Normal<T, N> {
         T::all_finite(self.a.as_flattened()) && T::all_finite(&self.b) && self.squares.is_finite()
     }
 
-    /// The inverse over the `active` unknowns, `damping` times their own weights added (Marquardt); none where they cannot
-    /// be told apart.
+    /// The inverse over the `active` unknowns, with `damping` times their own weights added (Marquardt); `None` if they
+    /// cannot be separated.
     pub(crate) fn inverse(&self, active: &[bool; N], damping: T) -> Option<Inverse<T, N>> {
         let weights = self.weights(active)?;
         let (mut rest, mut inverse) = ([[T::ZERO; N]; N], [[T::ZERO; N]; N]);
@@ -76,7 +76,8 @@ impl<T: Scalar, const N: usize> Normal<T, N> {
         T::all_finite(inverse.as_flattened()).then_some(inverse)
     }
 
-    /// 1/√ of the diagonal, zero for those that are held; none if nothing is known of an active one.
+    /// The reciprocal square roots of the diagonal, zero for unknowns that are held; `None` if nothing is known of an
+    /// active one.
     fn weights(&self, active: &[bool; N]) -> Option<[T; N]> {
         let mut weights = [T::ZERO; N];
         for (i, ((weight, line), _)) in
@@ -91,7 +92,7 @@ impl<T: Scalar, const N: usize> Normal<T, N> {
         Some(weights)
     }
 
-    /// The unknowns, by the inverse.
+    /// The solution for the unknowns, from the inverse.
     pub(crate) fn solution(&self, inverse: &Inverse<T, N>) -> [T; N] {
         let mut x = [T::ZERO; N];
         for (x, line) in x.iter_mut().zip(inverse) {
@@ -100,13 +101,13 @@ impl<T: Scalar, const N: usize> Normal<T, N> {
         x
     }
 
-    /// What the solution leaves of the squares; rounding may take it below zero, which counts as zero.
+    /// The residual sum of squares; where rounding takes it below zero, it counts as zero.
     pub(crate) fn left(&self, solution: &[T; N]) -> T {
         (self.squares - T::dot(solution, &self.b)).max(T::ZERO)
     }
 }
 
-/// Gauss and Jordan's elimination without pivoting, which positive definite matrices do not need.
+/// Gauss–Jordan elimination without pivoting, which positive definite matrices do not need.
 fn eliminate<T: Scalar, const N: usize>(
     rest: &mut [[T; N]; N],
     inverse: &mut [[T; N]; N],
@@ -137,7 +138,7 @@ fn eliminate<T: Scalar, const N: usize>(
     Some(())
 }
 
-/// √ of the diagonal: by how much the equations' noise is amplified in each unknown.
+/// The square roots of the diagonal: the amplification of the equations' noise in each unknown.
 pub(crate) fn amplification<T: Scalar, const N: usize>(inverse: &Inverse<T, N>) -> [T; N] {
     let mut all = [T::ZERO; N];
     for (i, (own, line)) in all.iter_mut().zip(inverse).enumerate() {
@@ -148,7 +149,7 @@ pub(crate) fn amplification<T: Scalar, const N: usize>(inverse: &Inverse<T, N>) 
     all
 }
 
-/// The noise of an equation: what was given, or what the solution leaves, if that is more.
+/// The noise of an equation: the given one, or that of the residuals if it is larger.
 pub(crate) fn noise<T: Scalar>(given: T, left: T, equations: T, unknowns: T) -> T {
     let freedom = equations - unknowns;
     if freedom < T::ONE { given } else { given.max((left / freedom).sqrt()) }

@@ -3,7 +3,7 @@ use heapless::Vec;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// What a sensor that lies still shows: the means of its samples.
+/// The mean measurements of a sensor at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -15,24 +15,24 @@ use nalgebra::SVector;
     ))
 )]
 pub struct Pose<T: Scalar> {
-    /// Mean of the accelerometer (m/s², sensor).
+    /// The mean of the accelerometer (m/s², sensor).
     pub specific_force: SVector<T, 3>,
-    /// Mean of the gyroscope (rad/s, sensor).
+    /// The mean of the gyroscope (rad/s, sensor).
     pub angular_rate: SVector<T, 3>,
-    /// How many samples they are from.
+    /// The number of samples in the means.
     pub samples: T,
 }
 
 impl<T: Scalar> Pose<T> {
-    /// Without a sample yet.
+    /// Creates a pose without samples.
     pub fn new() -> Self {
         Self { specific_force: SVector::zeros(), angular_rate: SVector::zeros(), samples: T::ZERO }
     }
 
-    /// Takes in a sample: specific force (m/s²) and angular rate (rad/s), as measured.
+    /// Adds a sample: specific force (m/s²) and angular rate (rad/s), as measured.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], or [`Error::Full`] where the number type counts no further; nothing is changed.
+    /// [`Error::NotFinite`], or [`Error::Full`] where the number type cannot count further; nothing is changed.
     pub fn push(
         &mut self,
         specific_force: &SVector<T, 3>,
@@ -69,28 +69,28 @@ impl<T: Scalar> Default for Pose<T> {
     }
 }
 
-/// One of the six ways to put a box down.
+/// One of the six sides on which a box can be put down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Side {
-    /// The axis that is upright: 0 is x, 1 is y, 2 is z.
+    /// The vertical axis: 0 is x, 1 is y, 2 is z.
     pub axis: u8,
-    /// Whether it points up, so that the accelerometer shows +g along it.
+    /// Whether the axis points up, so that the accelerometer shows +g along it.
     pub is_up: bool,
 }
 
-/// What the gyroscope shows at rest.
+/// The bias of a gyroscope, determined at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GyroscopeBias<T: Scalar> {
-    /// Its bias (rad/s, sensor).
+    /// The bias (rad/s, sensor).
     pub bias: SVector<T, 3>,
-    /// Standard deviation of each component (rad/s): of the mean of the poses.
+    /// The standard deviation of each component (rad/s): that of the mean of the poses.
     pub sigma: [T; 3],
 }
 
-/// Up to N static poses.
+/// A collection of up to N static poses.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -99,19 +99,19 @@ pub struct Poses<T: Scalar, const N: usize> {
 }
 
 impl<T: Scalar, const N: usize> Poses<T, N> {
-    /// A side counts as shown if its axis was within so much of upright: the cosine of 30°.
+    /// A side counts as shown if its axis was within 30° of the vertical: the cosine of that angle.
     const UPRIGHT: f64 = 0.866;
 
-    /// None yet.
+    /// Creates an empty collection.
     pub fn new() -> Self {
         Self { poses: Vec::new() }
     }
 
-    /// Takes in a pose.
+    /// Adds a pose.
     ///
     /// # Errors
-    /// [`Error::Empty`] of a pose without samples, or which shows no force at all, [`Error::NotFinite`], [`Error::Full`]
-    /// beyond N; nothing is changed.
+    /// [`Error::Empty`] for a pose without samples or without force, [`Error::NotFinite`], [`Error::Full`] beyond N;
+    /// nothing is changed.
     pub fn add(&mut self, pose: Pose<T>) -> Result<(), Error> {
         pose.check()?;
         if pose.samples < T::ONE || crate::matrix::unit(pose.specific_force.as_array()).is_none() {
@@ -120,12 +120,12 @@ impl<T: Scalar, const N: usize> Poses<T, N> {
         self.poses.push(pose).map_err(|_| Error::Full)
     }
 
-    /// How many there are.
+    /// The number of poses.
     pub fn count(&self) -> usize {
         self.poses.len()
     }
 
-    /// The sides that no pose has shown yet, within 30°: what to do next. Six of them tell offset and scale.
+    /// The sides that no pose has shown yet, within 30°: what to do next. All six determine offset and scale.
     pub fn missing(&self) -> impl Iterator<Item = Side> + '_ {
         let sides = [(0, true), (0, false), (1, true), (1, false), (2, true), (2, false)];
         let sides = sides.map(|(axis, is_up)| Side { axis, is_up });
@@ -145,8 +145,8 @@ impl<T: Scalar, const N: usize> Poses<T, N> {
         along > T::from_f64(Self::UPRIGHT)
     }
 
-    /// The gyroscope's bias, and how well it is known: by how it differs from pose to pose, at least by `noise`, the
-    /// standard deviation of a pose's mean (rad/s).
+    /// The gyroscope's bias, with its uncertainty from the differences between poses, which is at least that of
+    /// `noise`, the standard deviation of a pose's mean (rad/s).
     ///
     /// # Errors
     /// [`Error::TooFew`] without a pose, [`Error::NotPositive`], [`Error::NotFinite`].

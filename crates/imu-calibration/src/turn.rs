@@ -5,24 +5,25 @@ use nalgebra::SVector;
 
 /// A turn from one pose to the next, as the gyroscope measured it.
 ///
-/// It holds the turn itself and how it would change with the nine entries of the gyroscope's matrix, so that no sample
-/// is kept.
+/// It holds the turn itself and its sensitivity to the nine entries of the gyroscope's matrix, so that no sample is
+/// kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Turn<T: Scalar> {
     assumed: Triad<T>,
-    /// Columns of the turn from the sensor's frame now to that at the beginning.
+    /// The columns of the rotation from the sensor's current frame to its frame at the beginning.
     attitude: Square<T>,
-    /// ∫ R(t) e ω dt by the component of ω and the axis e: what an entry of the matrix adds to the turn (rad, frame at the beginning).
+    /// ∫ R(t) e ω dt by the component of ω and the axis e: the effect of an entry of the matrix on the turn (rad, frame
+    /// at the beginning).
     sensitivity: [Square<T>; 3],
 }
 
 impl<T: Scalar> Turn<T> {
-    /// The longest interval of a sample, s: beyond, nobody saw how the sensor turned.
+    /// The longest interval of a sample, s: in a longer one the sensor's motion is unknown.
     const LONGEST: f64 = 0.5;
 
-    /// Begins at rest, with what is known of the gyroscope: at first its bias alone.
+    /// Begins at rest, with what is known of the gyroscope: at first only its bias.
     ///
     /// # Errors
     /// [`Error::NotFinite`].
@@ -31,11 +32,11 @@ impl<T: Scalar> Turn<T> {
         Ok(Self { assumed, attitude: identity(), sensitivity: [[[T::ZERO; 3]; 3]; 3] })
     }
 
-    /// Goes on by a sample: the measured angular rate (rad/s, sensor), held for `interval` seconds.
+    /// Integrates a sample: the measured angular rate (rad/s, sensor), held for `interval` seconds.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; [`Error::Inconsistent`] of an interval that is negative or longer than half a second; nothing is
-    /// changed.
+    /// [`Error::NotFinite`]; [`Error::Inconsistent`] for an interval that is negative or longer than half a second;
+    /// nothing is changed.
     pub fn push(&mut self, angular_rate: &SVector<T, 3>, interval: T) -> Result<(), Error> {
         if !interval.is_finite() {
             return Err(Error::NotFinite);
@@ -65,12 +66,12 @@ impl<T: Scalar> Turn<T> {
         Ok(())
     }
 
-    /// A direction of the sensor's frame now, in its frame at the beginning.
+    /// Converts a direction from the sensor's current frame to its frame at the beginning.
     pub fn to_beginning(&self, direction: &SVector<T, 3>) -> SVector<T, 3> {
         SVector::from(times(&self.attitude, direction.as_array()))
     }
 
-    /// What the entry in this row and column of the matrix adds to the turn, by column and row.
+    /// The effect of each entry of the matrix on the turn, by column and row.
     pub(crate) fn sensitivity(&self) -> &[Square<T>; 3] {
         &self.sensitivity
     }

@@ -1,37 +1,38 @@
-//! LAMBDA's first half: ambiguities that are correlated as little as integers allow.
+//! First part of LAMBDA: ambiguities that are correlated as little as integer transformations allow.
 
 use heapless::Vec;
 
 use crate::Error;
 use crate::square::Square;
 
-/// Ambiguities beyond this have no fractions that a double could tell.
+/// Magnitude beyond which a double does not resolve the fraction of an ambiguity.
 const LARGEST: f64 = 1e15;
-/// An exchange must gain this much, or rounding would exchange for ever.
+/// Factor by which an exchange must reduce the variance; without it, rounding could cause exchanges without end.
 const GAIN: f64 = 1.0 + 1e-9;
-/// Exchanges an ambiguity and pair of them, at most: what remains is only a slower search.
+/// Limit on the exchanges, times the number of ambiguities squared: beyond it, the search is merely slower.
 const EXCHANGES: usize = 64;
 
-/// Real-valued ambiguities after the Z-transformation (Teunissen 1995): z = Zᵀa with the covariance Zᵀ Q Z = Lᵀ D L, where Z and
-/// its inverse are of integers. L is nearly a unit matrix and the variances D, of each ambiguity if those after it were known,
-/// are nearly alike.
+/// Real-valued ambiguities after the Z-transformation (Teunissen 1995).
+///
+/// They are z = Zᵀa with the covariance Zᵀ Q Z = Lᵀ D L, where Z and its inverse hold integers. L is nearly a unit
+/// matrix, and the variances D, of each ambiguity given those after it, are nearly alike.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decorrelated<const N: usize> {
-    /// z, without whole parts of a.
+    /// z, computed from a without its whole parts.
     pub(crate) float: Vec<f64, N>,
-    /// Whole parts that were taken off a.
+    /// Whole parts that were subtracted from a.
     whole: Vec<f64, N>,
-    /// Unit lower triangular.
+    /// L, unit lower triangular.
     pub(crate) lower: Square<N>,
-    /// D.
+    /// D, the conditional variances.
     pub(crate) variances: Vec<f64, N>,
-    /// Z⁻ᵀ, which takes z back to a.
+    /// Z⁻ᵀ, which transforms z back to a.
     back: Square<N>,
 }
 
 impl<const N: usize> Decorrelated<N> {
-    /// Decorrelates ambiguities (cycles) of which `covariance` is that of the first and the second index (cycles²; asked for
-    /// with the first not below the second).
+    /// Decorrelates ambiguities (cycles). `covariance` returns the covariance (cycles²) of the ambiguities with two
+    /// indices, and is called with the first index not below the second.
     ///
     /// # Errors
     /// [`Error::WrongNumber`], [`Error::NotFinite`], [`Error::NotPositive`].
@@ -61,24 +62,26 @@ impl<const N: usize> Decorrelated<N> {
         Ok(decorrelated)
     }
 
-    /// How many ambiguities there are.
+    /// The number of ambiguities.
     pub fn len(&self) -> usize {
         self.float.len()
     }
 
-    /// Never: see [`Self::new`].
+    /// Always false: see [`Self::new`].
     pub fn is_empty(&self) -> bool {
         self.float.is_empty()
     }
 
-    /// The probability that rounding one ambiguity after another, each given those before (bootstrapping), finds the right
-    /// integers: ∏ (2Φ(1/2σ) − 1). The search finds them at least as often (Teunissen 1999). It is as true as the covariance.
+    /// The probability ∏ (2Φ(1/2σ) − 1) that rounding one ambiguity after the other, each given those before
+    /// (bootstrapping), finds the right integers.
+    ///
+    /// The search finds them at least as often (Teunissen 1999). It is only as true as the covariance.
     pub fn success_rate(&self) -> f64 {
         let of = |variance: &f64| libm::erf(0.5 / libm::sqrt(2.0 * variance));
         self.variances.iter().map(of).product()
     }
 
-    /// The ambiguities that belong to decorrelated ones.
+    /// The original ambiguities for a vector of decorrelated ones.
     pub(crate) fn original(&self, decorrelated: &[f64]) -> Vec<i64, N> {
         let mut original = Vec::new();
         for (row, whole) in self.whole.iter().enumerate() {
@@ -95,8 +98,8 @@ impl<const N: usize> Decorrelated<N> {
         self.variances.get(index).copied().unwrap_or(0.0)
     }
 
-    /// Integer Gauss transformations make L small, exchanges put the best known last (Teunissen 1995, as laid out by Chang,
-    /// Yang and Zhou 2005).
+    /// Makes L small by integer Gauss transformations, and moves the best-known ambiguities to the end by exchanges
+    /// (Teunissen 1995, as laid out by Chang, Yang and Zhou 2005).
     fn reduce(&mut self) {
         let number = self.len();
         let Some(last) = number.checked_sub(2) else { return };
@@ -122,7 +125,8 @@ impl<const N: usize> Decorrelated<N> {
         }
     }
 
-    /// Takes so many times the ambiguity `row` off the ambiguity `column` that L is at most one half there.
+    /// Subtracts an integer multiple of the ambiguity `row` from the ambiguity `column`, such that L is at most one
+    /// half there.
     fn subtract(&mut self, row: usize, column: usize) {
         let times = libm::round(self.lower.at(row, column));
         if times == 0.0 {
@@ -140,7 +144,7 @@ impl<const N: usize> Decorrelated<N> {
         }
     }
 
-    /// Exchanges two neighbours, of which the later one has the variance `exchanged` then.
+    /// Exchanges two neighbours; the later one then has the variance `exchanged`.
     fn exchange(&mut self, at: usize, exchanged: f64) {
         let (number, next) = (self.len(), at + 1);
         let lower = self.lower.at(next, at);
@@ -170,7 +174,7 @@ impl<const N: usize> Decorrelated<N> {
     }
 }
 
-/// Q = Lᵀ D L.
+/// L and D of Q = Lᵀ D L.
 fn factors<const N: usize>(
     number: usize,
     covariance: impl Fn(usize, usize) -> f64,
@@ -187,7 +191,7 @@ fn factors<const N: usize>(
     }
     let (mut lower, mut variances) = (Square::<N>::identity(), Vec::<f64, N>::new());
     for _ in 0..number {
-        // Filled from the end, each place before it is written.
+        // A placeholder, which is written in the loop below, from the end on.
         variances.push(0.0).map_err(|_| Error::WrongNumber)?;
     }
     for row in (0..number).rev() {

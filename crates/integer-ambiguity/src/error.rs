@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Reason for which there are no integers.
+/// Reason why no integers were found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -8,11 +8,11 @@ use core::fmt;
 pub enum Error {
     /// There are no ambiguities, or more than there is room for.
     WrongNumber,
-    /// A number is not finite, or an ambiguity is beyond 10¹⁵, where doubles have no fractions.
+    /// A number is not finite, or an ambiguity exceeds 10¹⁵, where doubles have no fractions.
     NotFinite,
-    /// The covariance is none: it has a variance, given those before it, that is not positive.
+    /// The covariance is not positive definite: a conditional variance of an ambiguity is not positive.
     NotPositive,
-    /// So many integer vectors are near the ambiguities that the search was given up: they are not known well enough.
+    /// Too many integer vectors are near the ambiguities, so the search was given up: they are not known well enough.
     Exhausted,
 }
 

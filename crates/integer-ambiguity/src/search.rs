@@ -1,41 +1,42 @@
-//! LAMBDA's second half: the integer vectors that are nearest.
+//! Second part of LAMBDA: the search for the nearest integer vectors.
 
 use heapless::Vec;
 
 use crate::{Decorrelated, Error};
 
-/// The search is given up after so many integers: with well-known ambiguities it looks at a few for each.
+/// Limit on the integers tried by the search: for well-known ambiguities it tries a few for each.
 const MOST: usize = 10_000;
 
-/// The integer vector that is nearest to ambiguities, in the sense of their covariance, and how near.
+/// The integer vector nearest to the ambiguities in the metric of their covariance, and its distance.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Fix<const N: usize> {
     /// The integers, in the order of the ambiguities.
     pub integers: Vec<i64, N>,
-    /// Squared distance of the nearest vector, and of the second nearest: (a − z)ᵀ Q⁻¹ (a − z).
+    /// Squared distances (a − z)ᵀ Q⁻¹ (a − z) of the nearest and the second nearest vector.
     pub distances: [f64; 2],
 }
 
 impl<const N: usize> Fix<N> {
-    /// How many times farther, in squares, the second nearest vector is: the ratio test asks for 2 to 3 at least. Infinite where
-    /// the nearest is exactly right.
+    /// Squared distance of the second nearest vector over that of the nearest; infinite if the nearest is exact.
+    ///
+    /// The ratio test requires at least 2 to 3.
     pub fn ratio(&self) -> f64 {
         let [nearest, second] = self.distances;
         if nearest > 0.0 { second / nearest } else { f64::INFINITY }
     }
 }
 
-/// One level of the search.
+/// One level of the search, for one ambiguity.
 #[derive(Clone, Copy, Debug)]
 struct Level {
-    /// What the ambiguity is, given the integers after it.
+    /// Expected value of the ambiguity, given the integers after it.
     expected: f64,
     integer: f64,
-    /// To the next integer: they are tried from the nearest on, on both sides in turn.
+    /// Step to the next integer: they are tried from the nearest on, alternating between the sides.
     step: f64,
-    /// Squared distance of the integers after it.
+    /// Squared distance due to the integers after this one.
     before: f64,
 }
 
@@ -45,7 +46,7 @@ impl Level {
         Self { expected, integer, step: libm::copysign(1.0, expected - integer), before }
     }
 
-    /// Squared distance with its integer.
+    /// Squared distance including that of the current integer.
     fn distance(&self, variance: f64) -> f64 {
         let off = self.expected - self.integer;
         self.before + off * off / variance
@@ -58,10 +59,10 @@ impl Level {
 }
 
 impl<const N: usize> Decorrelated<N> {
-    /// The nearest integer vector, by a search in shrinking ellipsoids (Chang, Yang and Zhou 2005).
+    /// Finds the nearest integer vector, by a search in shrinking ellipsoids (Chang, Yang and Zhou 2005).
     ///
     /// # Errors
-    /// [`Error::Exhausted`] if the ambiguities are known so badly that too many integers would have to be looked at.
+    /// [`Error::Exhausted`] if the ambiguities are known so poorly that too many integers would have to be tried.
     pub fn nearest(&self) -> Result<Fix<N>, Error> {
         let number = self.len();
         let mut levels: Vec<Level, N> = Vec::new();
@@ -106,7 +107,7 @@ impl<const N: usize> Decorrelated<N> {
         Err(Error::Exhausted)
     }
 
-    /// Begins a level with the integers that are chosen after it.
+    /// Enters a level, given the integers chosen after it.
     fn enter(&self, levels: &mut Vec<Level, N>, at: usize, before: f64) {
         let mut expected = self.float.get(at).copied().unwrap_or(0.0);
         for (after, level) in levels.iter().enumerate().skip(at + 1) {

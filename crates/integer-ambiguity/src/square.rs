@@ -1,7 +1,7 @@
-//! A matrix of at most N × N whose entries are asked for by row and column: none beyond is read or written, so that nothing
-//! can panic.
+//! A matrix of at most N × N with access by row and column: entries beyond are neither read nor written, so that
+//! nothing can panic.
 
-/// The matrix.
+/// A square matrix, of which an upper left part may be in use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Square<const N: usize>([[f64; N]; N]);
 
@@ -20,7 +20,7 @@ impl<const N: usize> Square<N> {
         identity
     }
 
-    /// The entry; zero beyond the matrix.
+    /// The entry, or zero beyond the matrix.
     pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
         self.0.get(row).and_then(|row| row.get(column)).copied().unwrap_or(0.0)
     }

@@ -1,23 +1,23 @@
-//! The nearest integers against all integers there are nearby.
+//! The nearest integers, compared with all integers nearby.
 
 use kestirim_integer_ambiguity::{Decorrelated, Error};
 use proptest::prelude::*;
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// How often dice are thrown.
+/// Number of random trials of the success rate.
 const TRIALS: i32 = 20_000;
 
 type Matrix = [[f64; 3]; 3];
 
-/// Lᵀ D L of a unit lower triangular L.
+/// The covariance Lᵀ D L for a unit lower triangular L.
 fn covariance([l10, l20, l21]: [f64; 3], variances: [f64; 3]) -> Matrix {
     let lower = [[1.0, 0.0, 0.0], [l10, 1.0, 0.0], [l20, l21, 1.0]];
     let entry = |i: usize, j: usize| (0..3).map(|k| lower[k][i] * variances[k] * lower[k][j]).sum();
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)))
 }
 
-/// (a − z)ᵀ Q⁻¹ (a − z), from the end on, as Q = Lᵀ D L.
+/// The squared distance (a − z)ᵀ Q⁻¹ (a − z), evaluated from the last entry on, as Q = Lᵀ D L.
 fn distance(factors: ([f64; 3], [f64; 3]), ambiguities: [f64; 3], integers: [i64; 3]) -> f64 {
     let ([l10, l20, l21], variances) = factors;
     let [x, y, z] = [0, 1, 2].map(|i| ambiguities[i] - integers[i] as f64);
@@ -27,7 +27,8 @@ fn distance(factors: ([f64; 3], [f64; 3]), ambiguities: [f64; 3], integers: [i64
     first * first / variances[0] + middle * middle / variances[1] + last * last / variances[2]
 }
 
-/// The two nearest of all integers within `far` of the ambiguities.
+/// The nearest of all integer vectors within `far` of the ambiguities, and the two smallest
+/// distances.
 fn by_trying(
     factors: ([f64; 3], [f64; 3]),
     ambiguities: [f64; 3],
@@ -63,7 +64,7 @@ proptest! {
         const FAR: i64 = 20;
         let q = covariance(lower, variances);
         let fix = Decorrelated::<4>::new(&ambiguities, |i, j| q[i][j])?.nearest()?;
-        // What is farther away on an axis is farther away than the second nearest.
+        // Vectors farther away on an axis are then farther away than the second nearest.
         let widest = (0..3).map(|i| q[i][i]).fold(0.0, f64::max);
         prop_assume!((fix.distances[1] * widest).sqrt() < FAR as f64 - 1.0);
         let (integers, distances) = by_trying((lower, variances), ambiguities, FAR);
@@ -106,7 +107,7 @@ proptest! {
     }
 }
 
-/// Right integers come out as often as the success rate says, or more often.
+/// Right integers are found at least as often as the success rate says.
 #[test]
 fn the_success_rate_is_a_lower_bound() {
     let (lower, variances) = ([1.7, -0.6, 2.4], [0.09, 0.06, 0.04]);
@@ -147,7 +148,7 @@ fn what_cannot_be_is_refused() {
 
 #[test]
 fn a_search_without_an_end_is_given_up() {
-    // Thirty numbers of which nothing is known.
+    // Thirty ambiguities about which nothing is known.
     let ambiguities: Vec<f64> = (0..30).map(|i| 0.5 - 0.013 * f64::from(i)).collect();
     let entry = |i: usize, j: usize| if i == j { 1e4 } else { 0.0 };
     let decorrelated = Decorrelated::<30>::new(&ambiguities, entry).expect("a covariance");

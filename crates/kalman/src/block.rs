@@ -1,4 +1,4 @@
-//! Several measurements with correlated noise at once.
+//! Updates by several measurements with correlated noise at once.
 
 use crate::{Covariance, Error, Gaussian, SparseRow};
 use kestirim_scalar::{Columns, Components, Scalar};
@@ -8,20 +8,22 @@ use nalgebra::{SMatrix, SVector};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BlockInnovation<T: Scalar, const M: usize> {
-    /// ν = z − h(x), as given.
+    /// ν = z − h(x), as given by the caller.
     pub innovation: SVector<T, M>,
-    /// S = H P Hᵀ + R.
+    /// S = H P Hᵀ + R, the covariance of the innovation.
     pub covariance: Covariance<T, M>,
     /// νᵀ S⁻¹ ν: M on average when the model is right.
     pub nis: T,
 }
 
 impl<T: Scalar, const N: usize> Gaussian<T, N> {
-    /// M measurements at once, with innovations ν = z − h(x), rows H and noise R of any correlation.
+    /// Takes in M measurements at once, with innovations ν = z − h(x), rows H and noise R of any
+    /// correlation.
     ///
-    /// R = L D Lᵀ (L with a unit diagonal): L⁻¹z are measurements with the independent variances D,
-    /// and these are taken one after the other. The estimate is the textbook's, without the inverse
-    /// of S. Where R is diagonal, [`Gaussian::update`] for each measurement does the same for less.
+    /// With R = L D Lᵀ (L with a unit diagonal), L⁻¹z are measurements of independent variances D,
+    /// which are taken in one after the other. The estimate is the textbook's, without the inverse
+    /// of S. Where R is diagonal, [`Gaussian::update`] for each measurement does the same at lower
+    /// cost.
     ///
     /// # Errors
     /// [`Error::NotFinite`], or [`Error::NotPositive`] if R or S is not positive definite; the
@@ -46,7 +48,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         Ok(BlockInnovation { innovation: *innovation, covariance, nis })
     }
 
-    /// H P Hᵀ + R.
+    /// S = H P Hᵀ + R.
     fn expected_spread<const M: usize>(
         &self,
         rows: &SMatrix<T, M, N>,
@@ -78,7 +80,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
 
 type Decorrelated<T, const M: usize, const N: usize> = (SMatrix<T, M, N>, SVector<T, M>, [T; M]);
 
-/// L⁻¹H, L⁻¹ν and D of R = L D Lᵀ, by forward substitution while the factors are found.
+/// L⁻¹H, L⁻¹ν and D of R = L D Lᵀ, by forward substitution during the factorisation.
 fn decorrelated<T: Scalar, const M: usize, const N: usize>(
     rows: &SMatrix<T, M, N>,
     innovation: &SVector<T, M>,

@@ -2,11 +2,11 @@ use crate::gaussian::MANY;
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-/// A symmetric N × N covariance P, of which one triangle is kept.
+/// A symmetric N × N covariance P, of which only the lower triangle is stored.
 ///
-/// The other triangle is never written nor read, so P cannot lose its symmetry, whatever the
-/// rounding. Nor does it lose its positive sign: predictions and updates add to the diagonal what
-/// rounding may take ([`Scalar::rounding`]; see the crate's documentation). The storage is a plain [`SMatrix`]: [`Covariance::to_matrix`] gives the whole P.
+/// The upper triangle is never written nor read, so P cannot lose its symmetry, whatever the rounding. It stays
+/// positive, too: predictions and updates add to the diagonal what rounding may take from it ([`Scalar::rounding`]; see
+/// the crate's documentation). The storage is a plain [`SMatrix`]: [`Covariance::to_matrix`] gives the whole P.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -18,13 +18,14 @@ use nalgebra::{SMatrix, SVector};
     ))
 )]
 pub struct Covariance<T: Scalar, const N: usize> {
-    /// Entries with row ≥ column hold P; the others stay zero. Read as `lower.data.0[column][row]`: by
-    /// [`Columns`](kestirim_scalar::Columns) filters that use it take 4 % more stack at opt-level "s".
+    /// P in the entries with row ≥ column; the others stay zero. Indexed as `lower.data.0[column][row]`: through
+    /// [`Columns`](kestirim_scalar::Columns), filters take 4 % more stack at opt-level "s".
     #[cfg_attr(feature = "serde", serde(deserialize_with = "lower_triangle"))]
     lower: SMatrix<T, N, N>,
 }
 
-/// A stored triangle: variances are finite and not negative, and there is nothing above them.
+/// Deserialises a triangle, whose variances must not be negative, nor any entry infinite, nor any above the diagonal
+/// nonzero.
 #[cfg(feature = "serde")]
 fn lower_triangle<'de, D, T, const N: usize>(deserializer: D) -> Result<SMatrix<T, N, N>, D::Error>
 where
@@ -44,13 +45,13 @@ where
 }
 
 impl<T: Scalar, const N: usize> Covariance<T, N> {
-    /// P = 0: everything is known.
+    /// P = 0: every state is known exactly.
     #[inline]
     pub fn zero() -> Self {
         Self { lower: SMatrix::zeros() }
     }
 
-    /// Independent states with these variances (unit: the state's, squared).
+    /// The covariance of independent states with these variances (unit: the state's, squared).
     #[inline]
     pub fn from_variances(variances: &[T; N]) -> Self {
         let mut covariance = Self::zero();
@@ -60,7 +61,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         covariance
     }
 
-    /// P from a full matrix, whose lower triangle (row ≥ column) is taken.
+    /// P from the lower triangle (row ≥ column) of a full matrix.
     #[inline]
     pub fn from_lower_triangle(matrix: &SMatrix<T, N, N>) -> Self {
         let mut covariance = Self::zero();
@@ -72,7 +73,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         covariance
     }
 
-    /// The whole of P.
+    /// The full matrix P, both triangles.
     #[inline]
     pub fn to_matrix(&self) -> SMatrix<T, N, N> {
         let mut matrix = self.lower;
@@ -84,7 +85,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         matrix
     }
 
-    /// P\[i, j\], or `None` beyond the state.
+    /// P\[i, j\], or `None` if an index is beyond the state.
     #[inline(always)]
     pub fn get(&self, i: usize, j: usize) -> Option<T> {
         self.lower.data.0.get(i.min(j))?.get(i.max(j)).copied()
@@ -100,7 +101,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         variances
     }
 
-    /// Whether no kept entry is NaN, infinite or on a rail.
+    /// Whether no stored entry is NaN, infinite or at a limit of fixed point.
     #[inline]
     pub fn is_finite(&self) -> bool {
         T::all_finite(self.lower.data.0.as_flattened())
@@ -130,7 +131,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         }
     }
 
-    /// P ← P + a·(Q − P), for a of 0 to 1: what lies between two covariances is one.
+    /// P ← P + a·(Q − P) with `other` = Q and a in 0..=1: a blend of two covariances, which is itself one.
     #[inline]
     pub fn blend(&mut self, other: &Self, a: T) {
         for column in 0..N {
@@ -148,11 +149,11 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         *self.entry(I, I) += variance;
     }
 
-    /// P ← P + v·vᵀ: all states are wrong by the same unknown number of times their entry of `vector`.
+    /// P ← P + v·vᵀ: the covariance of an error that is an unknown multiple, of unit variance, of `vector`.
     #[inline]
     pub fn add_outer(&mut self, vector: &SVector<T, N>) {
         let [vector] = &vector.data.0;
-        // A number of states that the compiler does not see: unrolled, 17 states of doubles take six kilobytes.
+        // Hides the number of states from the compiler: unrolled, 17 states of doubles take six kilobytes.
         let states = core::hint::black_box(N);
         for (j, (column, &other)) in
             self.lower.data.0.iter_mut().zip(vector).enumerate().take(states)
@@ -165,11 +166,11 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
 
     /// P ← E P Eᵀ with `E = 1 + a·e_I·e_Jᵀ`: state `I` becomes `I + a·J`.
     ///
-    /// A transition that moves a few states by others is a product of such shears. A constant
-    /// velocity model is one a dimension (`position += dt·velocity`), each N multiplications,
-    /// where the dense F P Fᵀ takes 2N³. The order is that of the states' own update: a state is
-    /// read before it is itself sheared when the transition reads its old value. The rounding of a
-    /// shear is left to [`Gaussian::advance`](crate::Gaussian::advance) or the next update.
+    /// A transition in which a few states move by others is a product of such shears. A constant-velocity model is one
+    /// shear a dimension (`position += dt·velocity`), at N multiplications each, where the dense F P Fᵀ takes 2N³. The
+    /// order is that of the updates of the states themselves: where the transition reads the old value of a state, that
+    /// state is sheared afterwards. The rounding of a shear is left to [`Gaussian::advance`](crate::Gaussian::advance)
+    /// or the next update.
     #[inline(always)]
     pub fn shear<const I: usize, const J: usize>(&mut self, a: T) {
         const { assert!(I < N && J < N && I != J, "a shear joins two different components") };
@@ -178,7 +179,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
 
     /// [`Covariance::shear`] for indices known to be below N and different.
     ///
-    /// For speed, each pair has instructions of its own; for size, all share one function.
+    /// Compiled for speed, each pair has instructions of its own; compiled for size, all pairs share one function.
     #[cfg_attr(for_size, inline(never))]
     #[cfg_attr(not(for_size), inline(always))]
     pub(crate) fn shear_at(&mut self, i: usize, j: usize, a: T) {
@@ -189,12 +190,12 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
                 self.change(i, other, |entry| entry + step);
             }
         }
-        // E P Eᵀ adds a·P[i, j] with the old and once more with the new cross term.
+        // In E P Eᵀ, P[i, i] gains a·P[i, j] twice: with the cross term before and after the shear.
         let sheared = self.known(i, j);
         self.change(i, i, |entry| entry + a * (cross + sheared));
     }
 
-    /// Sets the variance of state `I`, and its covariances with the others to zero.
+    /// Sets the variance of state `I`, and its covariances with the other states to zero.
     #[inline]
     pub fn reset_component<const I: usize>(&mut self, variance: T) {
         const { assert!(I < N, "the state has no such component") };
@@ -231,7 +232,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         result
     }
 
-    /// P hᵀ of a row whose indices are below N, by the columns of P.
+    /// P hᵀ for a sparse row h whose indices are below N, by the columns of P.
     pub(crate) fn times(&self, row: &[(usize, T)]) -> [T; N] {
         let mut sums = [T::accumulator(); N];
         for &(index, value) in row {
@@ -254,7 +255,8 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     pub(crate) fn downdate(&mut self, gain: &[T; N], g: &[T; N]) {
         self.absorb_rounding();
         for column in 0..N {
-            // Of many states some have nothing to do with what is measured, as ambiguities of satellites that are not seen.
+            // Among many states, some have nothing to do with the measurement, such as ambiguities of satellites out of
+            // view.
             if N >= MANY && g[column] == T::ZERO {
                 continue;
             }
@@ -264,7 +266,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         }
     }
 
-    /// The same for all but row and column `i`.
+    /// P ← P − k·gᵀ as in [`Covariance::downdate`], for all entries but row and column `i`.
     #[inline(always)]
     pub(crate) fn downdate_beside(&mut self, i: usize, gain: &[T; N], g: &[T; N]) {
         self.absorb_rounding();
@@ -277,7 +279,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         }
     }
 
-    /// Scales row and column `i` < N by `factor`, where they cross once.
+    /// Scales row and column `i` < N by `factor`, their common entry once.
     #[inline(always)]
     pub(crate) fn scale_component(&mut self, i: usize, factor: T) {
         for other in 0..N {
@@ -285,12 +287,12 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         }
     }
 
-    /// In each entry of an update err the gain, the product and the difference, each by a rounding of
-    /// no more than √(P\[i, i\]·P\[j, j\]). A matrix of such errors is outweighed by N of them on its
-    /// diagonal.
+    /// Roundings to absorb for an update. The gain, the product and the difference of each entry err by a
+    /// rounding of no more than √(P\[i, i\]·P\[j, j\]) each; N such roundings on the diagonal outweigh a matrix
+    /// of these errors.
     const ROUNDINGS: u16 = N as u16;
 
-    /// Adds to the diagonal what the rounding of the step to come may take from it.
+    /// Adds to the diagonal what the rounding of the next step may take from it.
     #[inline(always)]
     pub(crate) fn absorb_rounding(&mut self) {
         for index in 0..N {
@@ -299,15 +301,14 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         }
     }
 
-    /// P\[i, j\] for indices that are below N, which the compiler need not know: one look at the bounds
-    /// and no panic.
+    /// P\[i, j\] for indices below N that the compiler does not know: one bounds check and no panic.
     #[inline(always)]
     pub(crate) fn known(&self, i: usize, j: usize) -> T {
         let place = i.min(j).wrapping_mul(N).wrapping_add(i.max(j));
         self.lower.data.0.as_flattened().get(place).copied().unwrap_or(T::ZERO)
     }
 
-    /// The same, to be changed.
+    /// Changes P\[i, j\] for indices below N, with one bounds check and no panic.
     #[inline(always)]
     fn change(&mut self, i: usize, j: usize, change: impl FnOnce(T) -> T) {
         let place = i.min(j).wrapping_mul(N).wrapping_add(i.max(j));

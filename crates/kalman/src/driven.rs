@@ -4,17 +4,17 @@ use crate::{Covariance, Gaussian, Process};
 use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::SMatrix;
 
-/// M states that move by the first K, M of which they are themselves; the others only fade: biases, gusts, trims.
+/// A process in which the first K states move the first M ≤ K, and the others only fade: biases, gusts, trims.
 ///
-/// `x[..M]` ← F x\[..K\], `x[i]` ← dᵢ xᵢ beyond, with noise Q. Of the N² M + N M² products of a dense F with so many
-/// rows, M N K + M² K / 2 are left.
+/// `x[..M]` ← F x\[..K\]; `x[i]` ← dᵢ xᵢ for i ≥ M; with noise Q. Of the N² M + N M² products of a dense F with as many
+/// rows, M N K + M² K / 2 remain.
 #[derive(Clone, Copy, Debug)]
 pub struct Driven<'a, T: Scalar, const N: usize, const M: usize, const K: usize> {
-    /// The rows of F that move something, by the K states that move them.
+    /// The first M rows of F, over the K states that move something.
     pub rows: &'a SMatrix<T, M, K>,
-    /// d, what is left of each other state after a step; the first M are not looked at.
+    /// d, the fraction of each other state that is left after a step; the first M entries are ignored.
     pub fading: &'a [T; N],
-    /// Q, of one step.
+    /// Q, the process noise of one step.
     pub noise: &'a Covariance<T, N>,
 }
 
@@ -26,7 +26,7 @@ impl<T: Scalar, const N: usize, const M: usize, const K: usize> Process<T, N>
         const { assert!(M <= K && K <= N, "states that move are among those that move them") };
         let Gaussian { mean, covariance } = estimate;
         let (f, q) = (self.rows.as_columns(), self.noise);
-        // F P, as it is before anything is written.
+        // F P, computed before P is overwritten.
         let mut moved = [[T::ZERO; M]; N];
         for (state, moved) in moved.iter_mut().enumerate() {
             *moved = self.moved(&from_fn(|k| covariance.at(k, state)));
@@ -59,7 +59,7 @@ impl<T: Scalar, const N: usize, const M: usize, const K: usize> Process<T, N>
 }
 
 impl<T: Scalar, const N: usize, const M: usize, const K: usize> Driven<'_, T, N, M, K> {
-    /// F times a column of K.
+    /// F times a vector of the first K states.
     #[inline(always)]
     fn moved(&self, column: &[T; K]) -> [T; M] {
         let f = self.rows.as_columns();

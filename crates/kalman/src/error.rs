@@ -1,21 +1,20 @@
 use core::fmt;
 
-/// Reason for which a prediction or an update was refused. The estimate is as it was before the call.
+/// Reason why a prediction or an update was refused. The estimate is as it was before the call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Error {
-    /// An argument, or what would have become of the estimate, is NaN, infinite or on a rail of
-    /// fixed point.
+    /// An argument or the resulting estimate is NaN, infinite or at a limit of fixed point.
     NotFinite,
-    /// A variance is negative, or the innovation's variance is not positive: nothing can be
+    /// A variance is negative, or the innovation's variance is not positive, so nothing can be
     /// weighed with it.
     NotPositive,
     /// A measurement row names a state that the estimate does not have.
     IndexOutOfRange,
-    /// The covariance does not settle: a state that grows is not observed, or one so slow that the
-    /// iterations ran out.
+    /// The covariance does not settle: a growing state is not observed, or a mode is so slow that
+    /// the iterations ran out.
     NotConverged,
     /// A measurement's model has no derivative at this mean, or none that can be trusted.
     NotLinearisable,

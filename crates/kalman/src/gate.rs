@@ -8,19 +8,19 @@ use kestirim_scalar::Scalar;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Verdict {
-    /// The measurement agrees with the estimate: take it in.
+    /// The measurement agrees with the estimate and is taken in.
     Admit,
-    /// The measurement does not agree: leave it out.
+    /// The measurement does not agree with the estimate and is left out.
     Reject,
     /// The measurement does not agree, nor did many before it, so the estimate must be wrong: take it in with
     /// [`Gaussian::correct_widened`].
     Recover,
 }
 
-/// Rejects measurements whose NIS is above γ, but not indefinitely.
+/// A gate that rejects measurements whose NIS is above γ, but not indefinitely.
 ///
-/// When more than `patience` measurements in a row are rejected, the estimate is taken to be wrong
-/// and not they. A gate belongs to one sensor: another one's good measurements say nothing about its
+/// After `patience` rejections in a row, the next disagreeing measurement is trusted instead of the
+/// estimate. A gate belongs to one sensor: good measurements of another one say nothing about its
 /// bad ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -32,12 +32,12 @@ pub struct Gate<T> {
 }
 
 impl<T: Scalar> Gate<T> {
-    /// A gate at NIS = `gamma` (25 is 5 σ) that gives up after `patience` rejections in a row.
+    /// A gate that rejects above NIS = `gamma` (25 is 5 σ) and gives in after `patience` rejections in a row.
     pub const fn new(gamma: T, patience: u16) -> Self {
         Self { gamma, patience, rejected: 0 }
     }
 
-    /// γ.
+    /// γ, the largest NIS that is admitted.
     pub const fn gamma(&self) -> T {
         self.gamma
     }
@@ -85,8 +85,8 @@ impl<T: Scalar> Gate<T> {
 }
 
 impl<T: Scalar, const N: usize> Gaussian<T, N> {
-    /// Takes in a measurement after scaling P until its NIS is `gamma`: for an estimate that has been
-    /// found wrong. The innovation's variance reported is that before the scaling.
+    /// Takes in a measurement after scaling P until its NIS is `gamma`, for an estimate that has been
+    /// found wrong. The reported variance of the innovation is that before the scaling.
     ///
     /// # Errors
     /// As [`Gaussian::correct`].
@@ -96,7 +96,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         weighed: &Weighed<T, N>,
         gamma: T,
     ) -> Result<Innovation<T>, Error> {
-        // ν²/γ = a·hPhᵀ + R, in an order in which fixed point keeps its range.
+        // ν²/γ = a·hPhᵀ + R, evaluated in an order that stays within the range of fixed point.
         let wanted = weighed.innovation().divided_by(gamma.divisor()) * weighed.innovation();
         let factor = ((wanted - weighed.noise()) / weighed.spread()).max(T::ONE);
         let mut next = *self;

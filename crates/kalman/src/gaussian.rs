@@ -3,7 +3,8 @@ use crate::{Covariance, Error, Innovation, Linear, Observation, Process, SparseR
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// From so many states on P is gone through by its columns, of which most are long: fewer looks at bounds, the same sums.
+/// Number of states from which on P is traversed by columns, most of which are then long: fewer bounds checks, same
+/// sums.
 pub(crate) const MANY: usize = 17;
 
 /// A state estimate: mean x and covariance P of N states.
@@ -20,14 +21,14 @@ pub(crate) const MANY: usize = 17;
     ))
 )]
 pub struct Gaussian<T: Scalar, const N: usize> {
-    /// x, the estimate.
+    /// x, the mean.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "finite"))]
     pub mean: SVector<T, N>,
-    /// P, its uncertainty.
+    /// P, the covariance of the mean's error.
     pub covariance: Covariance<T, N>,
 }
 
-/// A stored estimate.
+/// Deserialises a mean, all of whose entries must be finite.
 #[cfg(feature = "serde")]
 fn finite<'de, D, T, const N: usize>(deserializer: D) -> Result<SVector<T, N>, D::Error>
 where
@@ -54,22 +55,22 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     /// For a sparse F, [`Covariance::shear`] costs a fraction: see [`Process`].
     ///
     /// # Errors
-    /// [`Error::NotFinite`] if F or Q is not finite or the estimate would cease to be.
+    /// [`Error::NotFinite`] if F or Q is not finite or the estimate would become so.
     #[inline]
     pub fn predict(&mut self, f: &SMatrix<T, N, N>, q: &Covariance<T, N>) -> Result<(), Error> {
         self.advance(&Linear { f, q })
     }
 
-    /// Moves on by any process, linear or linearised.
+    /// Predicts the estimate by any process, linear or linearised.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] if the estimate would cease to be; it is untouched.
+    /// [`Error::NotFinite`] if the estimate would become so; it is untouched.
     #[inline(always)]
     pub fn advance(&mut self, process: &impl Process<T, N>) -> Result<(), Error> {
         let mut next = *self;
         process.advance(&mut next);
         next.covariance.absorb_rounding();
-        // No covariance is larger than its variances: √(P[i, i]·P[j, j]).
+        // No covariance exceeds √(P[i, i]·P[j, j]), so finite variances suffice.
         if !(T::all_finite(next.mean.as_array()) && next.covariance.has_finite_variances()) {
             return Err(Error::NotFinite);
         }
@@ -122,7 +123,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         Ok(())
     }
 
-    /// Takes in a measurement of noise variance R, by its model, linear or not.
+    /// Takes in a measurement of noise variance R by its model, linear or not.
     ///
     /// # Errors
     /// As [`Gaussian::weigh_observation`]; the estimate is untouched.
@@ -136,7 +137,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         self.correct(&weighed)
     }
 
-    /// Weighs a measurement of noise variance R, by its model, and changes nothing.
+    /// Weighs a measurement of noise variance R by its model, without changing the estimate.
     ///
     /// # Errors
     /// As [`Observation::linearise`] and [`Gaussian::update`].
@@ -150,12 +151,12 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         self.weigh_entries(row.as_ref(), innovation, variance)
     }
 
-    /// One scalar measurement with innovation ν = z − h(x), sparse row h = ∂h/∂x and variance R.
+    /// Takes in one scalar measurement with innovation ν = z − h(x), sparse row h = ∂h/∂x and variance R.
     ///
     /// S = h P hᵀ + R, k = P hᵀ/S, x ← x + k ν, P ← P − k h P. Several independent measurements
-    /// are taken one after the other: a division each and no matrix inverse. The innovation
-    /// comes from the caller, so a linear and a linearised model are served alike
-    /// ([`SparseRow::dot`] helps the linear one, [`Gaussian::observe`] both).
+    /// are taken in one after the other: one division each and no matrix inverse. The innovation
+    /// comes from the caller, which serves linear and linearised models alike
+    /// ([`SparseRow::dot`] helps with linear ones, [`Gaussian::observe`] with both).
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::NotPositive`] or [`Error::IndexOutOfRange`]; the estimate is
@@ -174,7 +175,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         self.take_in(&weights, &cross)
     }
 
-    /// Weighs a measurement as [`Gaussian::update`] would, and changes nothing.
+    /// Weighs a measurement as [`Gaussian::update`] would, without changing the estimate.
     ///
     /// # Errors
     /// As [`Gaussian::update`].
@@ -188,12 +189,12 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         self.weigh_entries(row.entries(), innovation, variance)
     }
 
-    /// [`Gaussian::weigh`] for a row whose number of entries depends on the situation: pairs of a
+    /// [`Gaussian::weigh`] for a row whose number of entries is known only at run time: pairs of a
     /// state's index and ∂h/∂(that state).
     ///
     /// # Errors
     /// As [`Gaussian::update`].
-    #[inline(always)] // With literal indices, nothing of the look-up is left.
+    #[inline(always)] // With literal indices, the look-up vanishes.
     pub fn weigh_entries(
         &self,
         row: &[(usize, T)],
@@ -206,7 +207,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         Ok(Weighed { weights, cross })
     }
 
-    /// Takes in a measurement that was weighed against this very estimate.
+    /// Takes in a measurement that was weighed against exactly this estimate.
     ///
     /// # Errors
     /// [`Error::NotFinite`]; the estimate is untouched.
@@ -215,7 +216,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         self.take_in(&weighed.weights, &weighed.cross)
     }
 
-    /// A scalar measurement of state `I` itself: [`Gaussian::update`] with a unit row.
+    /// Takes in a scalar measurement of state `I` itself: [`Gaussian::update`] with a unit row.
     ///
     /// The row and column of the measured state are scaled by R/S instead of being subtracted
     /// from: N multiplications less.
@@ -232,9 +233,9 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         Ok(self.update_at(I, innovation, variance)?.report())
     }
 
-    /// The same for an index known to be below N.
+    /// [`Gaussian::update_component`] for an index known to be below N.
     ///
-    /// For speed, each index has instructions of its own; for size, all share one function.
+    /// Compiled for speed, each index has instructions of its own; compiled for size, all share one function.
     #[cfg_attr(for_size, inline(never))]
     #[cfg_attr(not(for_size), inline(always))]
     fn update_at(&mut self, index: usize, innovation: T, variance: T) -> Result<Weights<T>, Error> {
@@ -248,13 +249,13 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         Ok(weights)
     }
 
-    /// Whether the state has all that a row names.
+    /// Refuses a row that names a state beyond N.
     #[inline(always)]
     fn covers(row: &[(usize, T)]) -> Result<(), Error> {
         if row.iter().all(|&(index, _)| index < N) { Ok(()) } else { Err(Error::IndexOutOfRange) }
     }
 
-    /// P hᵀ of a row that the state covers.
+    /// P hᵀ for a row whose indices are below N.
     #[inline(always)]
     fn cross_covariance(&self, row: &[(usize, T)]) -> [T; N] {
         if N >= MANY {
@@ -280,7 +281,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         Ok(weights.report())
     }
 
-    /// x ← x + k ν, and the gain k. (By reference: in a `Result` it would be copied about.)
+    /// x ← x + k ν, and the gain k. (By reference: within a `Result` it would be copied.)
     #[inline(always)]
     fn move_mean(
         &mut self,
@@ -293,7 +294,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
             gain[i] = weights.by_variance(cross[i]);
             mean[i] += gain[i] * weights.innovation;
         }
-        // A gain that is not finite makes its mean not finite, even where the innovation is zero.
+        // A gain that is not finite makes the mean so as well, even where the innovation is zero.
         if !T::all_finite(&mean) {
             return Err(Error::NotFinite);
         }
@@ -302,7 +303,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     }
 }
 
-/// h P hᵀ, from P hᵀ.
+/// h P hᵀ from the row h and P hᵀ.
 #[inline(always)]
 fn spread<T: Scalar, const N: usize>(row: &[(usize, T)], cross: &[T; N]) -> T {
     let mut spread = T::accumulator();

@@ -4,17 +4,17 @@ use crate::{Covariance, Error};
 use kestirim_scalar::Scalar;
 
 impl<T: Scalar, const N: usize> Covariance<T, N> {
-    /// Multiplies the covariance of `count` states from index `first` on among each other by `factor` ≥ 1,
-    /// and leaves their covariances with the other states.
+    /// Multiplies the covariance block of `count` states from index `first` on by `factor` ≥ 1, and leaves
+    /// their covariances with the other states as they are.
     ///
-    /// That is process noise in proportion to what the block is uncertain by: P stays positive, and a
-    /// surprise in the block is not taken for one in states that correlate with it. (Had the
-    /// correlations been kept, a receiver that moves would move its ambiguities.) Rounding is left to
-    /// the next update, as that of a [`Covariance::shear`] is.
+    /// This is process noise in proportion to the block's own uncertainty: P stays positive, and an innovation
+    /// that the block explains is not attributed to states correlated with it. (Were the correlations kept
+    /// instead, a moving receiver would shift its ambiguities.) Rounding is left to the next update, like
+    /// that of a [`Covariance::shear`].
     ///
     /// # Errors
     /// [`Error::IndexOutOfRange`], [`Error::NotPositive`] for a factor below one, or
-    /// [`Error::NotFinite`] if a variance would cease to be finite; P is untouched.
+    /// [`Error::NotFinite`] if a variance would become infinite; P is untouched.
     #[inline]
     pub fn inflate(&mut self, first: usize, count: usize, factor: T) -> Result<(), Error> {
         let end = first.checked_add(count).filter(|&end| end <= N);

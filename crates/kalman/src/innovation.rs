@@ -1,7 +1,7 @@
 use crate::Error;
 use kestirim_scalar::Scalar;
 
-/// Innovation of a measurement: its difference from what was expected.
+/// Innovation of a scalar measurement: its difference from what was expected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -14,15 +14,15 @@ pub struct Innovation<T> {
     pub nis: T,
 }
 
-/// The numbers by which a measurement is weighed, without the vectors: they fit into registers.
+/// The scalars by which a measurement is weighed, kept apart from the vectors so that they fit into registers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Weights<T: Scalar> {
     pub(crate) innovation: T,
-    /// h P hᵀ.
+    /// h P hᵀ, the variance of the expected measurement.
     spread: T,
-    /// R.
+    /// R, the variance of the measurement's noise.
     noise: T,
-    /// S, by which the gain and the NIS are divided.
+    /// S = h P hᵀ + R, as the divisor of the gain and the NIS.
     divisor: T::Divisor,
 }
 
@@ -36,13 +36,14 @@ impl<T: Scalar> Weights<T> {
         }
     }
 
-    /// The same where the mean is moved at once: an innovation that is not finite makes it so, which is looked at then.
+    /// [`Weights::new`] for an update that moves the mean at once, where an infinite innovation shows in the mean and
+    /// is caught.
     #[inline(always)]
     pub(crate) fn for_update(innovation: T, spread: T, noise: T) -> Result<Self, Error> {
         if !(T::SPREADS || innovation.is_finite()) {
             return Err(Error::NotFinite);
         }
-        // Rounding can leave h P hᵀ a trifle below zero.
+        // Rounding can leave h P hᵀ slightly below zero.
         let spread = spread.max(T::ZERO);
         let divisor = checked_divisor(spread, noise)?;
         Ok(Self { innovation, spread, noise, divisor })
@@ -70,12 +71,15 @@ impl<T: Scalar> Weights<T> {
 
 /// A measurement weighed against an estimate that it has not changed yet.
 ///
+/// Gates and robust weights inspect it, may change its noise, and take it in with
+/// [`Gaussian::correct`](crate::Gaussian::correct) or drop it.
+///
 /// Gates and robust weights look at it, may change its noise, and take it in with
 /// [`Gaussian::correct`](crate::Gaussian::correct) or drop it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weighed<T: Scalar, const N: usize> {
     pub(crate) weights: Weights<T>,
-    /// P hᵀ.
+    /// P hᵀ, the covariance of the state with the expected measurement.
     pub(crate) cross: [T; N],
 }
 
@@ -90,7 +94,7 @@ impl<T: Scalar, const N: usize> Weighed<T, N> {
         Ok(Self { weights: Weights { noise, divisor, ..self.weights }, ..self })
     }
 
-    /// ν = z − h(x).
+    /// ν = z − h(x), the innovation.
     #[inline(always)]
     pub fn innovation(&self) -> T {
         self.weights.innovation
@@ -108,19 +112,19 @@ impl<T: Scalar, const N: usize> Weighed<T, N> {
         self.weights.noise
     }
 
-    /// S = h P hᵀ + R.
+    /// S = h P hᵀ + R, the variance of the innovation.
     #[inline(always)]
     pub fn variance(&self) -> T {
         self.weights.variance()
     }
 
-    /// `value / S`, by the division that all quotients share.
+    /// `value / S`, by the divisor that all quotients share.
     #[inline(always)]
     pub fn by_variance(&self, value: T) -> T {
         self.weights.by_variance(value)
     }
 
-    /// P hᵀ, from which the gain P hᵀ/S is made.
+    /// P hᵀ, from which the gain P hᵀ/S is computed.
     #[inline(always)]
     pub fn cross_covariance(&self) -> &[T; N] {
         &self.cross
@@ -133,21 +137,21 @@ impl<T: Scalar, const N: usize> Weighed<T, N> {
         T::finish(T::mac(square, -gamma, self.variance())) > T::ZERO
     }
 
-    /// The same measurement against a·P.
+    /// The same measurement weighed against a·P instead of P.
     #[inline(always)]
     pub(crate) fn scaled(&self, a: T) -> Result<Self, Error> {
         let weights = Weights::new(self.innovation(), a * self.spread(), self.noise())?;
         Ok(Self { weights, cross: self.cross.map(|cross| a * cross) })
     }
 
-    /// ν, S and NIS as they are before the update.
+    /// ν, S and NIS as before the update.
     #[inline(always)]
     pub fn report(&self) -> Innovation<T> {
         self.weights.report()
     }
 }
 
-/// S as a divisor, if it is positive and finite.
+/// S as a divisor, provided that it is positive and finite.
 #[inline(always)]
 fn checked_divisor<T: Scalar>(spread: T, noise: T) -> Result<T::Divisor, Error> {
     let variance = spread + noise;

@@ -4,36 +4,36 @@ use crate::{Covariance, Error, Gaussian, SparseRow};
 use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// Process model: the change of a state of N components over one step.
+/// A process model: how a state of N components changes over one step.
 pub trait Process<T: Scalar, const N: usize> {
     /// x ← f(x), P ← F P Fᵀ + Q with F = ∂f/∂x at the old x.
     ///
-    /// Sums may run out of range: [`Gaussian::advance`] looks at the result and drops it.
+    /// Sums may run out of range: [`Gaussian::advance`] checks the result and discards it.
     fn advance(&self, estimate: &mut Gaussian<T, N>);
 }
 
-/// A scalar measurement of N states: what was measured, and by which model.
+/// A scalar measurement of N states: the measured value and its model.
 ///
-/// A type a sensor, with the measured value z and whatever else h(x) needs. The noise is no part of it: it
-/// belongs to who weighs, and may be learnt.
+/// One type for each kind of sensor, with the measured value z and whatever else h(x) needs. The noise is not part of
+/// it: it belongs to the filter that weighs the measurement, and may be learnt.
 pub trait Observation<T: Scalar, const N: usize> {
-    /// ∂h/∂x as pairs of a state's index and the derivative by it; what is not named is zero. Usually a
-    /// [`SparseRow`].
+    /// ∂h/∂x as pairs of a state's index and the derivative with respect to it; states not named have derivative zero.
+    /// Usually a [`SparseRow`].
     type Row: AsRef<[(usize, T)]>;
 
-    /// ν = z − h(x) and the row ∂h/∂x. The difference is the model's, so that angles can be wrapped.
+    /// ν = z − h(x) and the row ∂h/∂x. The model takes the difference itself, so that it can wrap angles.
     ///
     /// # Errors
-    /// [`Error::NotLinearisable`], or whatever else keeps the model from an expectation at this x.
+    /// [`Error::NotLinearisable`], or any other error that keeps the model from predicting the measurement at this x.
     fn linearise(&self, mean: &SVector<T, N>) -> Result<(T, Self::Row), Error>;
 }
 
 /// The linear process x ← F x with noise Q.
 #[derive(Clone, Copy, Debug)]
 pub struct Linear<'a, T: Scalar, const N: usize> {
-    /// Transition of one step.
+    /// F, the transition of one step.
     pub f: &'a SMatrix<T, N, N>,
-    /// Process noise of one step.
+    /// Q, the process noise of one step.
     pub q: &'a Covariance<T, N>,
 }
 
@@ -59,9 +59,9 @@ impl<T: Scalar, const N: usize> Process<T, N> for Linear<'_, T, N> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LinearObservation<T, const K: usize> {
-    /// h.
+    /// h, the row of the measurement matrix.
     pub row: SparseRow<T, K>,
-    /// z, in the measurement's unit.
+    /// z, the measured value, in the measurement's unit.
     pub measured: T,
 }
 

@@ -1,25 +1,25 @@
 use crate::{Gaussian, Process};
 use kestirim_scalar::{Components, Scalar};
 
-/// Motion at a velocity that white acceleration changes, in D dimensions.
+/// Constant-velocity motion driven by white acceleration, in D dimensions.
 ///
-/// The first D states are the position (m), the next D the velocity (m/s); further states stay as
+/// The first D states are the position (m), the next D the velocity (m/s); further states are left as
 /// they are. x ← x + g v + ½ a h², v ← d v + a h over h seconds, where a is a known acceleration.
 /// Without decay g = h and d = 1, and Q is that of continuous white noise,
-/// q·\[h³/3, h²/2; h²/2, h\] an axis (Bar-Shalom, Li and Kirubarajan 2001, 6.2.2). With a decay time τ
+/// q·\[h³/3, h²/2; h²/2, h\] per axis (Bar-Shalom, Li and Kirubarajan 2001, 6.2.2). With a decay time τ
 /// the velocity is forgotten, v̇ = −v/τ + w, in steps of any length without an exponential:
-/// d = 1/(1 + h/τ), g = h d. Its variance settles at q τ/2, as the exact one does, and a tag of which
-/// nothing is heard drifts, but does not run away.
+/// d = 1/(1 + h/τ), g = h d. Its variance settles at q τ/2, as the exact one does, so a tag that is no
+/// longer heard drifts but does not run away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ConstantVelocity<T, const D: usize> {
     /// h, the length of the step, s.
     pub interval: T,
-    /// q, power spectral density of the acceleration, m²/s³.
+    /// q, the power spectral density of the acceleration, m²/s³.
     pub acceleration_density: T,
-    /// τ, after which a velocity is mostly forgotten, s.
+    /// τ, the time constant with which the velocity decays, s; `None` for no decay.
     pub decay_time: Option<T>,
-    /// a, the acceleration as measured, m/s².
+    /// a, the measured acceleration, m/s²; `None` if unknown.
     pub acceleration: Option<[T; D]>,
 }
 
@@ -29,7 +29,7 @@ impl<T: Scalar, const D: usize> ConstantVelocity<T, D> {
         Self { interval, acceleration_density, decay_time: None, acceleration: None }
     }
 
-    /// (g, d, Q of position, covariance, velocity).
+    /// (g, d, Q), with Q of one axis as variance of position, covariance, variance of velocity.
     #[inline]
     fn coefficients(&self) -> (T, T, [T; 3]) {
         let h = self.interval;
@@ -41,7 +41,7 @@ impl<T: Scalar, const D: usize> ConstantVelocity<T, D> {
         let divisor = (tau + h).divisor();
         let decay = tau.divided_by(divisor);
         let reach = h * decay;
-        // Both go over from the white noise's at h ≪ τ to the settled process's at h ≫ τ.
+        // Both tend to those of white noise for h ≪ τ and to those of the settled process for h ≫ τ.
         let velocity = gained * decay * (T::ONE + decay) * T::HALF;
         let position = gained * reach * reach * third * (T::ONE + T::TWO * h.divided_by(divisor));
         (reach, decay, [position, velocity * reach * T::HALF, velocity])

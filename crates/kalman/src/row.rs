@@ -3,10 +3,10 @@ use crate::{Error, Gaussian, Weighed};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// One row of a measurement matrix H, of which only `K` entries are not zero.
+/// One row of a measurement matrix H with at most `K` entries that are not zero.
 ///
-/// A range to an anchor touches two or three of the states, a zero velocity one: what is zero is
-/// neither stored nor multiplied. When the indices are literals, the compiler resolves every
+/// A range to an anchor depends on two or three of the states, a zero-velocity measurement on one:
+/// zeros are neither stored nor multiplied. Where the indices are literals, the compiler resolves every
 /// access.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -15,19 +15,19 @@ pub struct SparseRow<T, const K: usize> {
 }
 
 impl<T: Scalar, const K: usize> SparseRow<T, K> {
-    /// A row from pairs of a state's index and ∂h/∂(that state). An index given twice counts twice.
+    /// A row from pairs of a state's index and ∂h/∂(that state). Entries of the same index add up.
     #[inline]
     pub const fn new(entries: [(usize, T); K]) -> Self {
         Self { entries }
     }
 
-    /// The pairs of index and derivative.
+    /// The entries, as pairs of a state's index and the derivative.
     #[inline]
     pub const fn entries(&self) -> &[(usize, T); K] {
         &self.entries
     }
 
-    /// h·x, what a linear measurement model expects to see; `None` where an index is beyond the state.
+    /// h·x, the value that a linear measurement model predicts; `None` if an index is beyond the state.
     #[inline]
     pub fn dot<const N: usize>(&self, state: &SVector<T, N>) -> Option<T> {
         let mut sum = T::accumulator();
@@ -46,7 +46,7 @@ impl<T, const K: usize> AsRef<[(usize, T)]> for SparseRow<T, K> {
 }
 
 impl<T: Scalar, const N: usize> Gaussian<T, N> {
-    /// [`Gaussian::weigh`] for a row that is known at run time alone: ∂h/∂x for each state, of which zeros cost next to
+    /// [`Gaussian::weigh`] for a row that is known only at run time: ∂h/∂x for each state. Zeros cost next to
     /// nothing.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! What stored estimators are. Raise the version of one that is stored otherwise than before.
+//! Names and versions of stored estimators. Raise the version whenever the stored form changes.
 
 use crate::Gaussian;
 use kestirim_scalar::Scalar;

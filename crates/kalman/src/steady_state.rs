@@ -1,4 +1,4 @@
-//! The gain a filter settles at when neither its model nor its sensors change.
+//! The gain at which a filter settles when neither its model nor its sensors change.
 
 use crate::{Covariance, Error, Gaussian};
 use kestirim_scalar::{Columns, Components, Scalar};
@@ -17,16 +17,17 @@ pub struct SteadyState<T: Scalar, const N: usize, const M: usize> {
     pub posterior: Covariance<T, N>,
 }
 
-/// Steps of the Riccati recursion before it is given up.
+/// Limit on the steps of the Riccati recursion, after which it is given up.
 const MOST_STEPS: u32 = 100_000;
 
-/// Settles the filter x ← F x + w, z = H x + v with covariances Q of w and R of v.
+/// Gain and covariances at which the filter of x ← F x + w, z = H x + v settles, with covariances Q
+/// of w and R of v.
 ///
-/// The Riccati recursion itself, repeated until no variance changes by more than its rounding: as
-/// slow as the slowest mode, and nothing is inverted. For firmware, run it on the host.
+/// Repeats the Riccati recursion itself until no variance changes by more than its rounding: as
+/// slow as the slowest mode, and without any inverse. For firmware, run it on the host.
 ///
 /// # Errors
-/// [`Error::NotConverged`], or why an update was refused.
+/// [`Error::NotConverged`], or the reason why an update was refused.
 pub fn steady_state<T: Scalar, const N: usize, const M: usize>(
     f: &SMatrix<T, N, N>,
     q: &Covariance<T, N>,
@@ -35,7 +36,8 @@ pub fn steady_state<T: Scalar, const N: usize, const M: usize>(
 ) -> Result<SteadyState<T, N, M>, Error> {
     let nothing = SVector::<T, M>::zeros();
     let mut filter = Gaussian::new(SVector::zeros(), *q);
-    // A state that Q does not drive must be seen to decay, or to be learnt.
+    // A state that Q does not drive starts uncertain, so that the recursion shows whether it decays
+    // or is learnt.
     filter.covariance.add(&Covariance::from_variances(&[T::ONE; N]));
     for _ in 0..MOST_STEPS {
         let before = filter.covariance.variances();
@@ -51,7 +53,8 @@ pub fn steady_state<T: Scalar, const N: usize, const M: usize>(
     Err(Error::NotConverged)
 }
 
-/// K, column by column: where the update moves a zero mean when one innovation is 1.
+/// The gain K by columns: the mean, at first zero, after an update whose only nonzero innovation is
+/// 1.
 fn gain<T: Scalar, const N: usize, const M: usize>(
     prior: &Covariance<T, N>,
     h: &SMatrix<T, M, N>,

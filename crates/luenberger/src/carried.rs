@@ -2,9 +2,9 @@ use crate::Error;
 use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// A state, and what rounding has left of its last step: steps far below the last place add up.
+/// A state with the rounding remainder of its last step, so that steps far below the resolution add up.
 ///
-/// At 1 kHz a slow mode moves by a thousandth of its distance a step; rounded away, it would stand still at a
+/// At 1 kHz a slow mode moves by a thousandth of its distance per step; rounded away, it would stop at a
 /// wrong place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -35,13 +35,13 @@ impl<T: Scalar, const N: usize> Carried<T, N> {
         Ok(Self { value: *value, rest: SMatrix::from([[T::accumulator(); N]; 1]) })
     }
 
-    /// The sums by which a step begins.
+    /// The sums with which a step begins: the remainders of the last one.
     #[inline(always)]
     pub(crate) fn sums(&self) -> [T::Accumulator; N] {
         *self.rest.as_array()
     }
 
-    /// The state moved on by these sums, if it stays finite.
+    /// The state after adding these sums, if it stays finite.
     #[inline(always)]
     pub(crate) fn advanced(
         &self,
@@ -57,7 +57,7 @@ impl<T: Scalar, const N: usize> Carried<T, N> {
     }
 }
 
-/// `sums + block · vector`.
+/// `sums += block · vector`.
 #[inline(always)]
 pub(crate) fn mac<T: Scalar, const R: usize, const C: usize>(
     sums: &mut [T::Accumulator; R],

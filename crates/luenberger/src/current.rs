@@ -9,21 +9,21 @@ use crate::{Error, Plant};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// The coefficients of a [`CurrentObserver`], independent of its scalar.
+/// The coefficients of a [`CurrentObserver`], independent of its scalar type.
 ///
-/// In a `const` it costs a target no double-precision arithmetic.
+/// As a `const`, they need no double-precision arithmetic on the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurrentGains<const N: usize, const M: usize, const P: usize> {
     core: FullOrderGains<N, M, P>,
 }
 
 impl<const N: usize, const M: usize, const P: usize> CurrentGains<N, M, P> {
-    /// From a plant and the gain K, N × P: that of a settled Kalman filter, or A⁻¹ L of a predictor's L, with
-    /// which the poles are the predictor's.
+    /// The coefficients for a plant and the gain K, N × P: that of a settled Kalman filter, or A⁻¹ L for a predictor's
+    /// L, with which the poles are the predictor's.
     pub const fn new(plant: &Plant<N, M, P>, k: &SMatrix<f64, N, P>) -> Self {
         let (b, c, k) = (&plant.b.data.0, &plant.c.data.0, &k.data.0);
         let state = less_identity(&plant.a.data.0);
-        // What a rounding leaves goes from one half of the step to the other: both are scaled alike.
+        // The rounding remainder is passed between the two halves of a step, so both must be scaled alike.
         let exponents = larger(
             exponents(and_magnitudes(and_magnitudes([0.0; N], &state), b)),
             exponents(and_magnitudes([0.0; N], k)),
@@ -34,9 +34,9 @@ impl<const N: usize, const M: usize, const P: usize> CurrentGains<N, M, P> {
 
 /// A full-order observer in current form: x̂⁻ = A x̂ + B u, then x̂ = x̂⁻ + K (y − C x̂⁻).
 ///
-/// The estimate has seen the newest measurement, where a [`Predictor`](crate::Predictor)'s is one interval
+/// The estimate includes the newest measurement, whereas that of a [`Predictor`](crate::Predictor) is one interval
 /// older. Its error obeys e⁺ = (A − K C A) e, whose poles are those of A − A K C: with K = A⁻¹ L both forms
-/// have the same. With the gain that `kestirim_kalman::steady_state` settles at, it is that Kalman filter.
+/// have the same poles. With the gain of `kestirim_kalman::steady_state`, it is the settled Kalman filter.
 ///
 /// Units are the plant's. Cost: N (N + M + 2 P) multiplications.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,12 +53,12 @@ impl<const N: usize, const M: usize, const P: usize> CurrentGains<N, M, P> {
     )
 )]
 pub struct CurrentObserver<T: Scalar, const N: usize, const M: usize, const P: usize> {
-    /// Increment of A − I, B and K.
+    /// The increment with the blocks A − I, B and K, and −C.
     core: FullOrder<T, N, M, P>,
 }
 
 impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<T, N, M, P> {
-    /// An observer that starts at this state.
+    /// An observer that starts at the state `start`.
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::TooLarge`].
@@ -73,7 +73,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
         })
     }
 
-    /// Starts again at this state.
+    /// Restarts at the state `start`.
     ///
     /// # Errors
     /// [`Error::NotFinite`]; the estimate is untouched.
@@ -82,13 +82,13 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
         self.core.reset(start)
     }
 
-    /// x̂ after the last prediction or correction.
+    /// x̂, the state after the last prediction or correction.
     #[inline]
     pub const fn estimate(&self) -> &SVector<T, N> {
         &self.core.estimate.value
     }
 
-    /// Moves on by one interval, over which these inputs were applied.
+    /// Predicts over one interval, during which these inputs were applied.
     ///
     /// # Errors
     /// [`Error::NotFinite`]; the estimate is untouched.
@@ -98,7 +98,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
         Ok(())
     }
 
-    /// Takes in a measurement of the estimate's time, and answers with the innovation y − C x̂⁻.
+    /// Takes in a measurement made at the time of the estimate, and returns the innovation y − C x̂⁻.
     ///
     /// # Errors
     /// [`Error::NotFinite`]; the estimate is untouched.
@@ -109,8 +109,8 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
         Ok(innovation)
     }
 
-    /// [`CurrentObserver::predict`] with the inputs since the last measurement, and [`CurrentObserver::correct`] with the new
-    /// one; both or neither.
+    /// [`CurrentObserver::predict`] with the inputs since the last measurement, then [`CurrentObserver::correct`] with
+    /// the new measurement. Either both succeed or neither is applied.
     ///
     /// # Errors
     /// [`Error::NotFinite`]; the estimate is untouched.
@@ -141,7 +141,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> CurrentObserver<
         measured: &SVector<T, P>,
     ) -> Result<(Carried<T, N>, SVector<T, P>), Error> {
         let innovation = self.core.innovation(prior, measured);
-        // A rail may hide in a difference.
+        // In fixed point, a measurement at a limit may not show in the difference.
         if !(T::all_finite(measured.as_array()) && T::all_finite(innovation.as_array())) {
             return Err(Error::NotFinite);
         }

@@ -1,7 +1,7 @@
-//! The little algebra by which gains become coefficients, in double precision and constant functions: in a
-//! `const`, nothing of it reaches the target.
+//! The matrix algebra that turns gains into coefficients, in double precision and as constant functions: in a
+//! `const`, none of it reaches the target.
 
-/// R × C, column by column, as in the storage of a matrix.
+/// An R × C matrix column by column, as in the storage of `SMatrix`.
 pub(crate) type Dense<const R: usize, const C: usize> = [[f64; R]; C];
 
 /// A − I.
@@ -53,7 +53,7 @@ pub(crate) const fn negative<const R: usize, const C: usize>(a: &Dense<R, C>) ->
     negative
 }
 
-/// The rows and columns of A with these indices; zero where there is no such one.
+/// The submatrix of A with these row and column indices; zero where an index is beyond A.
 pub(crate) const fn part<const N: usize, const M: usize, const R: usize, const C: usize>(
     a: &Dense<N, M>,
     rows: &[usize; R],
@@ -74,7 +74,7 @@ pub(crate) const fn part<const N: usize, const M: usize, const R: usize, const C
     part
 }
 
-/// 0, 1, … N − 1.
+/// The indices 0, 1, … N − 1.
 pub(crate) const fn all<const N: usize>() -> [usize; N] {
     let mut indices = [0; N];
     let mut i = 0;

@@ -7,9 +7,9 @@ use crate::{Error, Plant};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// The coefficients of a [`DisturbanceObserver`], independent of its scalar.
+/// The coefficients of a [`DisturbanceObserver`], independent of its scalar type.
 ///
-/// In a `const` it costs a target no double-precision arithmetic.
+/// As a `const`, they need no double-precision arithmetic on the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DisturbanceGains<const N: usize, const M: usize, const P: usize, const D: usize> {
     step: IntegerIncrement<N, M, P>,
@@ -20,10 +20,10 @@ pub struct DisturbanceGains<const N: usize, const M: usize, const P: usize, cons
 }
 
 impl<const N: usize, const M: usize, const P: usize, const D: usize> DisturbanceGains<N, M, P, D> {
-    /// From x⁺ = A x + B u + E d, y = C x + S d, d⁺ = d, and the gains of the augmented observer.
+    /// The coefficients for x⁺ = A x + B u + E d, y = C x + S d, d⁺ = d, and the gains of the augmented observer.
     ///
     /// `e` is N × D (a column of B for a disturbance of that input), `s` is P × D (a unit vector for the bias of
-    /// an output; zero else). `l_state` (N × P) above `l_disturbance` (D × P) is the gain L that places the poles
+    /// an output; otherwise zero). `l_state` (N × P) above `l_disturbance` (D × P) is the gain L that places the poles
     /// of \[A, E; 0, I\] − L \[C, S\], or that of its settled Kalman filter in predictor form.
     pub const fn new(
         plant: &Plant<N, M, P>,
@@ -51,12 +51,12 @@ impl<const N: usize, const M: usize, const P: usize, const D: usize> Disturbance
 /// An observer of N states and D constant or slowly changing disturbances, in predictor form:
 /// `x̂⁺ = A x̂ + B u + E d̂ + L_x ν`, `d̂⁺ = d̂ + L_d ν` with ν = y − C x̂ − S d̂.
 ///
-/// A plant under a constant disturbance leaves an ordinary observer with a constant error; this one has an
-/// integrator for it. Tell it what the actuators applied ([`Saturation`](crate::Saturation)): the
-/// difference to what was commanded would be learnt as a disturbance. It can tell disturbances apart only
-/// if the augmented pair is observable: no more disturbances than outputs.
+/// Under a constant disturbance, an ordinary observer keeps a constant error; this one has an
+/// integrator for it. Pass it what the actuators applied ([`Saturation`](crate::Saturation)): the
+/// difference from the command would be learnt as a disturbance. Disturbances can be told apart only
+/// if the augmented pair is observable, which requires no more disturbances than outputs.
 ///
-/// Units are the plant's; a disturbance that enters as an input has the input's. Cost:
+/// Units are the plant's; a disturbance that enters like an input has the unit of that input. Cost:
 /// N (N + D + M + P) + P (N + 2 D) multiplications.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -77,13 +77,13 @@ pub struct DisturbanceObserver<
 > {
     estimate: Carried<T, N>,
     learnt: Carried<T, D>,
-    /// A − I − `L_x` C, B and `L_x`.
+    /// The increment with the blocks A − I − `L_x` C, B and `L_x`.
     step: Increment<T, N, M, P>,
-    /// E − `L_x` S, scaled as the other blocks.
+    /// E − `L_x` S, scaled like the blocks of `step`.
     entry: SMatrix<T, N, D>,
-    /// `L_d`.
+    /// `L_d`, the gain of the disturbances.
     learning: Rows<T, D, P>,
-    /// −C and −S.
+    /// −C and −S, which yield the innovation.
     unseen_state: Rows<T, P, N>,
     unseen_learnt: Rows<T, P, D>,
 }
@@ -113,7 +113,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const D: usize>
         })
     }
 
-    /// Starts again at this state and with these disturbances.
+    /// Restarts at this state and with these disturbances.
     ///
     /// # Errors
     /// [`Error::NotFinite`]; the estimate is untouched.
@@ -133,21 +133,21 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const D: usize>
         &self.estimate.value
     }
 
-    /// d̂, the disturbances.
+    /// d̂, the disturbances as estimated so far.
     #[inline]
     pub const fn disturbance(&self) -> &SVector<T, D> {
         &self.learnt.value
     }
 
-    /// y − C x̂ − S d̂, by which [`DisturbanceObserver::step`] with this measurement would correct.
+    /// y − C x̂ − S d̂, the innovation that [`DisturbanceObserver::step`] with this measurement would use.
     #[inline]
     pub fn innovation(&self, measured: &SVector<T, P>) -> SVector<T, P> {
         let unexpected = self.unseen_state.added(measured, &self.estimate.value);
         self.unseen_learnt.added(&unexpected, &self.learnt.value)
     }
 
-    /// Moves on with what the actuators applied and the sensors measured at the estimate's time; answers with
-    /// the innovation.
+    /// Moves on by one step with the inputs that the actuators applied and a measurement made at the estimate's time;
+    /// returns the innovation.
     ///
     /// # Errors
     /// [`Error::NotFinite`]; state and disturbances are untouched.

@@ -1,17 +1,16 @@
 use core::fmt;
 
-/// Reason for which an observer was not built, or did not step. An estimate is as it was before the call.
+/// Reason why an observer was not built or did not step. The estimate is as it was before the call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Error {
-    /// An argument, or what would have become of the estimate, is NaN, infinite or on a rail of fixed
-    /// point.
+    /// An argument or the resulting estimate is NaN, infinite or at a limit of fixed point.
     NotFinite,
-    /// The coefficients of a row add up to more than the scalar can hold.
+    /// The coefficients of a row add up to more than the scalar type can hold.
     TooLarge,
-    /// A measured state does not exist, or is named twice.
+    /// The index of a measured state does not exist, or is given twice.
     WrongState,
     /// A lower limit is above the upper one, or is not a number.
     WrongLimits,

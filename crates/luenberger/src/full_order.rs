@@ -1,4 +1,4 @@
-//! Parts that the predictor and the current form of a full-order observer share.
+//! Parts shared by the predictor and the current form of a full-order observer.
 
 use crate::Error;
 use crate::carried::Carried;
@@ -8,7 +8,7 @@ use crate::rows::{IntegerRows, Rows};
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// The coefficients of a [`FullOrder`] on their way to a scalar.
+/// The coefficients of a [`FullOrder`] as integers, before conversion to a scalar type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FullOrderGains<const N: usize, const M: usize, const P: usize> {
     pub(crate) step: IntegerIncrement<N, M, P>,
@@ -16,15 +16,15 @@ pub(crate) struct FullOrderGains<const N: usize, const M: usize, const P: usize>
 }
 
 impl<const N: usize, const M: usize, const P: usize> FullOrderGains<N, M, P> {
-    /// From the blocks of a step, and C.
+    /// The coefficients from the blocks of a step and from C.
     pub(crate) const fn new(step: IntegerIncrement<N, M, P>, c: &Dense<P, N>) -> Self {
         Self { step, unseen: IntegerRows::new(&negative(c)) }
     }
 }
 
-/// An estimate of all N states, what a step adds to it, and what is expected of a measurement.
+/// An estimate of all N states, the increment of a step, and the model of the measurement.
 ///
-/// Each observer puts it together in place: a constructor of its own would cost a copy at opt-level "s".
+/// Each observer builds it in place: a constructor would cost a copy at opt-level "s".
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -38,7 +38,7 @@ impl<const N: usize, const M: usize, const P: usize> FullOrderGains<N, M, P> {
 pub(crate) struct FullOrder<T: Scalar, const N: usize, const M: usize, const P: usize> {
     pub(crate) estimate: Carried<T, N>,
     pub(crate) step: Increment<T, N, M, P>,
-    /// −C.
+    /// −C, which yields the innovation.
     pub(crate) unseen: Rows<T, P, N>,
 }
 
@@ -49,7 +49,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> FullOrder<T, N, 
         Ok(())
     }
 
-    /// y − C x of this measurement and this state.
+    /// The innovation y − C x for a measurement and a state.
     #[inline(always)]
     pub(crate) fn innovation(
         &self,

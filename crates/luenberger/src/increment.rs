@@ -5,7 +5,7 @@ use crate::integers::{and_magnitudes, exponents, integers, scaled, shifts};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// An [`Increment`] on its way to a scalar.
+/// The coefficients of an [`Increment`] as integers, before conversion to a scalar type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct IntegerIncrement<const N: usize, const M: usize, const P: usize> {
     pub(crate) exponents: [i32; N],
@@ -15,7 +15,7 @@ pub(crate) struct IntegerIncrement<const N: usize, const M: usize, const P: usiz
 }
 
 impl<const N: usize, const M: usize, const P: usize> IntegerIncrement<N, M, P> {
-    /// From blocks whose rows are summed together.
+    /// The coefficients from blocks whose rows are summed together.
     pub(crate) const fn new(
         state: &Dense<N, N>,
         input: &Dense<N, M>,
@@ -25,7 +25,7 @@ impl<const N: usize, const M: usize, const P: usize> IntegerIncrement<N, M, P> {
         Self::with(exponents(sums), state, input, output)
     }
 
-    /// From blocks and the exponents of the sums in which they stand.
+    /// The coefficients from blocks, with given exponents of the sums that they are part of.
     pub(crate) const fn with(
         exponents: [i32; N],
         state: &Dense<N, N>,
@@ -41,8 +41,8 @@ impl<const N: usize, const M: usize, const P: usize> IntegerIncrement<N, M, P> {
     }
 }
 
-/// Increment of a state in a step: N × N, N × M and N × P blocks that multiply state, inputs and outputs. Row i is
-/// scaled up by 2^shift i.
+/// Increment of a state in one step: N × N, N × M and N × P blocks that multiply state, inputs and outputs. Row i is
+/// scaled up by 2 to the power of `shifts[i]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -73,7 +73,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> Increment<T, N, 
         })
     }
 
-    /// The sums of a step of this state under these inputs, with what the last one left.
+    /// The sums of a step from this state with these inputs, including the remainder of the last step.
     #[inline(always)]
     pub(crate) fn driven(
         &self,
@@ -86,13 +86,13 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> Increment<T, N, 
         sums
     }
 
-    /// Adds the share of the outputs, or of their innovation.
+    /// Adds the contribution of the outputs, or of their innovation, to the sums.
     #[inline(always)]
     pub(crate) fn and_output(&self, sums: &mut [T::Accumulator; N], output: &SVector<T, P>) {
         mac(sums, &self.output, output);
     }
 
-    /// The state moved on by a whole step.
+    /// The state after a complete step.
     #[inline(always)]
     pub(crate) fn advanced(
         &self,

@@ -1,21 +1,21 @@
-//! Coefficients on their way from double precision to a scalar: integers with one exponent a row, so that a
-//! target converts them without a double.
+//! Coefficients between double precision and a scalar type: integers with one exponent per row, which a
+//! target converts without double-precision arithmetic.
 
 use crate::Error;
 use crate::dense::Dense;
 use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// An entry is its integer · 2^(exponent of its row − 62).
+/// Bits of a coefficient: an entry is its integer · 2^(exponent of its row − 62).
 const BITS: i32 = 62;
-/// Least exponent of a row: of smaller ones fewer bits are kept, as fixed point could not hold them.
+/// Smallest exponent of a row: smaller rows keep fewer bits, which fixed point could not represent anyway.
 const LEAST: i32 = -28;
-/// Largest exponent of a row: no gain is beyond 2¹²⁰.
+/// Largest exponent of a row: no gain exceeds 2¹²⁰.
 const MOST: i32 = 120;
-/// Stands for a row that is not finite.
+/// Exponent that marks a row with an entry that is not finite.
 const NOT_FINITE: i32 = i32::MAX;
 
-/// Adds the magnitudes of each row of a block.
+/// Adds the magnitudes of each row of a block to `sums`.
 pub(crate) const fn and_magnitudes<const R: usize, const C: usize>(
     mut sums: [f64; R],
     block: &Dense<R, C>,
@@ -32,12 +32,12 @@ pub(crate) const fn and_magnitudes<const R: usize, const C: usize>(
     sums
 }
 
-/// For each row the exponent of the least power of two above its magnitudes' sum, and a little above.
+/// The exponent, for each row, of the smallest power of two clearly above the sum of its magnitudes.
 pub(crate) const fn exponents<const R: usize>(sums: [f64; R]) -> [i32; R] {
     let mut exponents = [0; R];
     let mut row = 0;
     while row < R {
-        // Roundings of the coefficients must not carry the sum over the power.
+        // The margin keeps rounding of the coefficients from carrying the sum over the power.
         let biased = ((sums[row] * (1.0 + 1e-6)).to_bits() >> 52) & 0x7FF;
         let exponent = biased as i32 - 1022;
         exponents[row] = if biased == 0x7FF {
@@ -52,7 +52,7 @@ pub(crate) const fn exponents<const R: usize>(sums: [f64; R]) -> [i32; R] {
     exponents
 }
 
-/// The larger of two exponents of each row.
+/// The larger of the two exponents for each row.
 pub(crate) const fn larger<const R: usize>(a: [i32; R], b: [i32; R]) -> [i32; R] {
     let mut larger = a;
     let mut row = 0;
@@ -65,7 +65,7 @@ pub(crate) const fn larger<const R: usize>(a: [i32; R], b: [i32; R]) -> [i32; R]
     larger
 }
 
-/// A block as integers.
+/// A block as integers, given the exponents of its rows.
 pub(crate) const fn integers<const R: usize, const C: usize>(
     block: &Dense<R, C>,
     exponents: &[i32; R],
@@ -86,7 +86,7 @@ pub(crate) const fn integers<const R: usize, const C: usize>(
     integers
 }
 
-/// By how many bits each row is scaled up in this scalar.
+/// The number of bits by which each row is scaled up in this scalar type.
 pub(crate) fn shifts<T: Scalar, const R: usize>(
     exponents: &[i32; R],
 ) -> Result<SVector<u32, R>, Error> {
@@ -101,7 +101,7 @@ pub(crate) fn shifts<T: Scalar, const R: usize>(
     Ok(SVector::from(shifts))
 }
 
-/// A block in this scalar, its rows scaled up.
+/// A block in this scalar type, with its rows scaled up.
 pub(crate) fn scaled<T: Scalar, const R: usize, const C: usize>(
     integers: &[[i64; R]; C],
     exponents: &[i32; R],
@@ -113,7 +113,7 @@ pub(crate) fn scaled<T: Scalar, const R: usize, const C: usize>(
         for ((scaled, &integer), (&exponent, &shift)) in scaled.iter_mut().zip(integers).zip(scales)
         {
             let exponent = exponent - BITS + shift as i32;
-            // Two halves: a double has more digits than an `i32`.
+            // Converted in two halves, as a coefficient has more bits than an `i32`.
             let (high, low) = ((integer >> 31) as i32, (integer & 0x7FFF_FFFF) as i32);
             *scaled = T::from_binary(high, exponent + 31) + T::from_binary(low, exponent);
         }

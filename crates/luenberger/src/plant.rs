@@ -2,13 +2,13 @@ use nalgebra::SMatrix;
 
 /// A discrete-time plant: x⁺ = A x + B u, y = C x, with N states, M inputs and P outputs.
 ///
-/// Where the plant has a direct feedthrough, y = C x + D u, hand the observer y − D u.
+/// For a plant with direct feedthrough, y = C x + D u, pass y − D u to the observer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plant<const N: usize, const M: usize, const P: usize> {
-    /// A, N × N, of one step.
+    /// A, N × N, the transition of one step.
     pub a: SMatrix<f64, N, N>,
-    /// B, N × M.
+    /// B, N × M, the input matrix of one step.
     pub b: SMatrix<f64, N, M>,
-    /// C, P × N.
+    /// C, P × N, the output matrix.
     pub c: SMatrix<f64, P, N>,
 }

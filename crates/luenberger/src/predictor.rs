@@ -8,17 +8,17 @@ use crate::{Error, Plant};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// The coefficients of a [`Predictor`], independent of its scalar.
+/// The coefficients of a [`Predictor`], independent of its scalar type.
 ///
-/// In a `const` it costs a target no double-precision arithmetic.
+/// As a `const`, they need no double-precision arithmetic on the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PredictorGains<const N: usize, const M: usize, const P: usize> {
     core: FullOrderGains<N, M, P>,
 }
 
 impl<const N: usize, const M: usize, const P: usize> PredictorGains<N, M, P> {
-    /// From a plant and the gain L, N × P, that places the poles of A − L C; or A K, where K is the gain of a
-    /// settled Kalman filter.
+    /// The coefficients for a plant and the gain L, N × P, that places the poles of A − L C; or A K, where K is the
+    /// gain of a settled Kalman filter.
     pub const fn new(plant: &Plant<N, M, P>, l: &SMatrix<f64, N, P>) -> Self {
         let (b, c, l) = (&plant.b.data.0, &plant.c.data.0, &l.data.0);
         let state = less_product(&less_identity(&plant.a.data.0), l, c);
@@ -29,10 +29,10 @@ impl<const N: usize, const M: usize, const P: usize> PredictorGains<N, M, P> {
 /// A full-order observer in predictor form: x̂⁺ = A x̂ + B u + L (y − C x̂) (the thesis' eq. 4.14, in discrete
 /// time).
 ///
-/// A step takes what was applied and measured at one time and gives the estimate for the next: there is a
-/// whole interval for the arithmetic, and the estimate is as old. It is computed as
+/// A step takes inputs and measurements of one instant and gives the estimate for the next, which leaves a
+/// whole interval for the arithmetic but makes the estimate one interval old. It is computed as
 /// x̂⁺ = x̂ + (A − I − L C) x̂ + B u + L y, whose coefficients are small where the modes are slow and keep all
-/// their digits, and what rounding leaves of a step is carried to the next.
+/// their digits, and the rounding remainder of a step is carried to the next.
 ///
 /// Units are the plant's. Cost: N (N + M + P) multiplications.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,12 +49,12 @@ impl<const N: usize, const M: usize, const P: usize> PredictorGains<N, M, P> {
     )
 )]
 pub struct Predictor<T: Scalar, const N: usize, const M: usize, const P: usize> {
-    /// Increment of A − I − L C, B and L.
+    /// The increment with the blocks A − I − L C, B and L, and −C.
     core: FullOrder<T, N, M, P>,
 }
 
 impl<T: Scalar, const N: usize, const M: usize, const P: usize> Predictor<T, N, M, P> {
-    /// An observer that starts at this state.
+    /// An observer that starts at the state `start`.
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::TooLarge`].
@@ -69,7 +69,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> Predictor<T, N, 
         })
     }
 
-    /// Starts again at this state.
+    /// Restarts at the state `start`.
     ///
     /// # Errors
     /// [`Error::NotFinite`]; the estimate is untouched.
@@ -84,14 +84,14 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> Predictor<T, N, 
         &self.core.estimate.value
     }
 
-    /// y − C x̂, by which [`Predictor::step`] with this measurement would correct. The step itself does without
+    /// y − C x̂, the innovation that [`Predictor::step`] with this measurement would use. The step itself does not need
     /// it.
     #[inline]
     pub fn innovation(&self, measured: &SVector<T, P>) -> SVector<T, P> {
         self.core.innovation(&self.core.estimate, measured)
     }
 
-    /// Moves on with what the actuators applied and the sensors measured at the estimate's time.
+    /// Moves on by one step with the inputs that the actuators applied and a measurement made at the estimate's time.
     ///
     /// # Errors
     /// [`Error::NotFinite`]; the estimate is untouched.
@@ -101,7 +101,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize> Predictor<T, N, 
         Ok(())
     }
 
-    /// Moves on where nothing was measured: as if it had been what was expected.
+    /// Moves on by one step without a measurement, as if the expected one had been made.
     ///
     /// # Errors
     /// [`Error::NotFinite`]; the estimate is untouched.

@@ -6,10 +6,10 @@ use crate::rows::{IntegerRows, Rows};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// The coefficients of a [`ReducedObserver`] of N states, of which P are measured and R are not, with M inputs;
-/// independent of its scalar.
+/// The coefficients of a [`ReducedObserver`] of N states, P of them measured and R not, with M inputs.
 ///
-/// In a `const` it costs a target no double-precision arithmetic.
+/// They are independent of the scalar type of the observer. As a `const`, they need no double-precision arithmetic on
+/// the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReducedGains<const N: usize, const M: usize, const P: usize, const R: usize> {
     measured: [usize; P],
@@ -20,12 +20,12 @@ pub struct ReducedGains<const N: usize, const M: usize, const P: usize, const R:
 }
 
 impl<const N: usize, const M: usize, const P: usize, const R: usize> ReducedGains<N, M, P, R> {
-    /// From a plant x⁺ = A x + B u, the indices of the states that are measured (in the order of the outputs),
+    /// The coefficients for a plant x⁺ = A x + B u, the indices of the measured states (in the order of the outputs),
     /// and the gain L, R × P, that places the poles of `A_uu − L A_mu` (u: the unmeasured states in ascending order, m:
-    /// the measured ones).
+    /// the measured states).
     ///
     /// # Errors
-    /// [`Error::WrongState`]. In a constant: `match … { Ok(gains) => gains, Err(_) => panic!() }`.
+    /// [`Error::WrongState`]. In a `const`, use `match … { Ok(gains) => gains, Err(_) => panic!() }`.
     pub const fn new(
         a: &SMatrix<f64, N, N>,
         b: &SMatrix<f64, N, M>,
@@ -58,7 +58,7 @@ impl<const N: usize, const M: usize, const P: usize, const R: usize> ReducedGain
     }
 }
 
-/// The states that are not measured, ascending; `None` if one measured does not exist or is named twice.
+/// The unmeasured states in ascending order; `None` if an index of a measured state is beyond N or given twice.
 const fn others<const N: usize, const P: usize, const R: usize>(
     measured: &[usize; P],
 ) -> Option<[usize; R]> {
@@ -83,10 +83,10 @@ const fn others<const N: usize, const P: usize, const R: usize>(
     Some(others)
 }
 
-/// A reduced-order observer: only what is not measured is estimated, w⁺ = F w + G y + H u, `x̂_u = w + L y`.
+/// A reduced-order observer, which estimates only the unmeasured states: w⁺ = F w + G y + H u, `x̂_u = w + L y`.
 ///
-/// `F = A_uu − L A_mu`, `G = F L + A_um − L A_mm`, `H = B_u − L B_m` (Luenberger 1971). The estimate follows a
-/// measurement at once, as the current form's does, and so does its noise: measured states are taken as they are.
+/// `F = A_uu − L A_mu`, `G = F L + A_um − L A_mm`, `H = B_u − L B_m` (Luenberger 1971). The estimate responds to a
+/// measurement at once, as in the current form, and also to its noise: measured states are taken as they are.
 ///
 /// Units are the plant's. Cost: R (R + 2 P + M) multiplications.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,9 +109,9 @@ pub struct ReducedObserver<
     measured: SVector<usize, P>,
     unmeasured: SVector<usize, R>,
     w: Carried<T, R>,
-    /// F − I, H and G.
+    /// The increment with the blocks F − I, H and G.
     step: Increment<T, R, M, P>,
-    /// L and −L.
+    /// L and −L, which add or remove the share of the measurement.
     shown: Rows<T, R, P>,
     hidden: Rows<T, R, P>,
 }
@@ -119,7 +119,7 @@ pub struct ReducedObserver<
 impl<T: Scalar, const N: usize, const M: usize, const P: usize, const R: usize>
     ReducedObserver<T, N, M, P, R>
 {
-    /// An observer that starts with these unmeasured states, and the first measurement.
+    /// An observer that starts with these unmeasured states and the measurement made at the same time.
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::TooLarge`].
@@ -140,7 +140,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const R: usize>
         })
     }
 
-    /// Starts again with these unmeasured states, and what is measured with them.
+    /// Restarts with these unmeasured states and the measurement made at the same time.
     ///
     /// # Errors
     /// [`Error::NotFinite`]; the estimate is untouched.
@@ -160,7 +160,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const R: usize>
         self.shown.added(&self.w.value, measured)
     }
 
-    /// All states at the time of this measurement; the measured ones are as measured.
+    /// All states at the time of this measurement, the measured ones as measured.
     #[inline]
     pub fn estimate(&self, measured: &SVector<T, P>) -> SVector<T, N> {
         let mut estimate = SVector::<T, N>::from([T::ZERO; N]);
@@ -175,7 +175,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const R: usize>
         estimate
     }
 
-    /// Moves on to the next measurement, with this one and what the actuators apply from now on.
+    /// Moves on to the time of the next measurement, with this measurement and the inputs applied from now on.
     ///
     /// # Errors
     /// [`Error::NotFinite`]; the estimate is untouched.
@@ -186,7 +186,7 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const R: usize>
     }
 }
 
-/// `w = x_u − L y`.
+/// The initial `w = x_u − L y`.
 fn start<T: Scalar, const P: usize, const R: usize>(
     hidden: &Rows<T, R, P>,
     unmeasured: &SVector<T, R>,

@@ -5,7 +5,7 @@ use crate::integers::{and_magnitudes, exponents, integers, scaled, shifts};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// A matrix on its way to a scalar.
+/// A matrix as integers, before conversion to a scalar type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct IntegerRows<const R: usize, const C: usize> {
     exponents: [i32; R],
@@ -19,7 +19,7 @@ impl<const R: usize, const C: usize> IntegerRows<R, C> {
     }
 }
 
-/// A matrix that is multiplied with one rounding a row, each row scaled up by as many bits as the scalar allows.
+/// A matrix whose products are rounded once per row; each row is scaled up by as many bits as the scalar type allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -41,7 +41,7 @@ impl<T: Scalar, const R: usize, const C: usize> Rows<T, R, C> {
         Ok(Self { matrix: scaled(&design.integers, &design.exponents, &shifts), shifts })
     }
 
-    /// A state moved on by matrix · vector, with what the last step left.
+    /// The state after adding matrix · vector, including the remainder of the last step.
     #[inline(always)]
     pub(crate) fn advanced(
         &self,

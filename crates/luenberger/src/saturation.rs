@@ -4,8 +4,8 @@ use nalgebra::SVector;
 
 /// The limits of M actuators, in the units of the inputs.
 ///
-/// An observer that is told what was commanded, where the plant got less, is wrong by B times the difference a
-/// step, and a disturbance observer learns a disturbance that is none. Tell it what was applied:
+/// An observer that is given a command which the actuators apply only in part errs by B times the difference in each
+/// step, and a disturbance observer learns a disturbance that does not exist. Pass it what was applied:
 /// `observer.step(&limits.applied(&command), &measured)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -23,7 +23,7 @@ pub struct Saturation<T: Scalar, const M: usize> {
 }
 
 impl<T: Scalar, const M: usize> Saturation<T, M> {
-    /// Limits of each input; [`Scalar::MIN`] and [`Scalar::MAX`] where there are none.
+    /// Limits of each input; use [`Scalar::MIN`] and [`Scalar::MAX`] for an input without limits.
     ///
     /// # Errors
     /// [`Error::WrongLimits`].
@@ -36,7 +36,7 @@ impl<T: Scalar, const M: usize> Saturation<T, M> {
         }
     }
 
-    /// The command that the actuators carry out; NaN stays NaN, for the observer to refuse.
+    /// The command as limited by the actuators; NaN stays NaN, so that the observer refuses it.
     #[inline]
     pub fn applied(&self, command: &SVector<T, M>) -> SVector<T, M> {
         let mut applied = *command;

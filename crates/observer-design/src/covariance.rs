@@ -6,10 +6,10 @@ use crate::extended::Extended;
 use crate::number::{Square, extend, finite, symmetrised};
 use nalgebra::SMatrix;
 
-/// Asymmetry and negative eigenvalues that rounding explains, beside the variances.
+/// Asymmetry and negative eigenvalues attributed to rounding, relative to the variances.
 const NEGLIGIBLE: f64 = 1e-10;
 
-/// The covariance with more digits, exactly symmetric, and its smallest eigenvalue on a scale on which all
+/// The covariance with 106 bits, exactly symmetric, and its smallest eigenvalue on a scale on which all
 /// variances are 1.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! From continuous to discrete time.
+//! Discretisation of continuous-time systems.
 
 use crate::Error;
 use crate::covariance;
@@ -7,7 +7,7 @@ use crate::number::{Square, Times, extend, finite, norm, round, symmetrised};
 use crate::solve::Eliminated;
 use nalgebra::SMatrix;
 
-/// x⁺ = A x + B u.
+/// A discrete-time system x⁺ = A x + B u.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -18,8 +18,9 @@ pub struct Discrete<const N: usize, const M: usize> {
     pub b: SMatrix<f64, N, M>,
 }
 
-/// ẋ = A x + B u with an input that is held for `interval` seconds: `e^(A h)` and `∫ e^(A s) ds B`, exactly, whether
-/// A can be inverted or not.
+/// Discretises ẋ = A x + B u with an input held for `interval` seconds: `e^(A h)` and `∫ e^(A s) ds B`.
+///
+/// The result is exact up to rounding, whether or not A can be inverted.
 ///
 /// # Errors
 /// [`Error::Interval`] or [`Error::NotFinite`].
@@ -32,7 +33,7 @@ pub fn zero_order_hold<const N: usize, const M: usize>(
     answer(&flow.transition, &flow.integral.times(&extend(b)))
 }
 
-/// The same by the trapezoidal rule: (I − A h/2)⁻¹ (I + A h/2) and (I − A h/2)⁻¹ B h.
+/// Discretises ẋ = A x + B u by the trapezoidal rule: (I − A h/2)⁻¹ (I + A h/2) and (I − A h/2)⁻¹ B h.
 ///
 /// # Errors
 /// [`Error::Interval`], [`Error::NotFinite`], or [`Error::Singular`] if 2/h is a pole.
@@ -49,11 +50,11 @@ pub fn tustin<const N: usize, const M: usize>(
     answer(&backward.solve(&(identity + half)), &backward.solve(&input))
 }
 
-/// The covariance which white noise of spectral density Qc leaves after `interval` seconds:
+/// The covariance that white noise of spectral density Qc accumulates over `interval` seconds:
 /// `∫ e^(A s) Qc e^(Aᵀ s) ds` (Van Loan 1978).
 ///
 /// # Errors
-/// [`Error::Interval`], [`Error::NotFinite`]; [`Error::NotSymmetric`] or [`Error::NotPositive`] of the density.
+/// [`Error::Interval`], [`Error::NotFinite`]; [`Error::NotSymmetric`] or [`Error::NotPositive`] for the density.
 pub fn discrete_noise<const N: usize>(
     a: &SMatrix<f64, N, N>,
     density: &SMatrix<f64, N, N>,
@@ -89,13 +90,13 @@ struct Flow<const N: usize> {
     noise: Square<Extended, N>,
 }
 
-/// Terms of the series that matter at 106 bits where ‖A h‖ ≤ ½; the noise has ‖A h‖ twice.
+/// Terms of the series that matter at 106 bits for ‖A h‖ ≤ ½; in that of the noise, the argument is twice as large.
 const TERMS: u32 = 30;
-/// Halvings of the interval: 2⁶⁴ of them leave nothing finite.
+/// Limit on the halvings of the interval: a norm that needs more leaves nothing finite.
 const MOST_HALVINGS: u32 = 64;
 
 impl<const N: usize> Flow<N> {
-    /// Series over an interval halved until it is short, then doubled.
+    /// The flow by series over an interval that is halved until it is short, then doubled again.
     fn new(a: &Square<f64, N>, density: &Square<f64, N>, interval: f64) -> Result<Self, Error> {
         let whole = checked(a, interval)?;
         let mut halvings = 0;
@@ -115,7 +116,7 @@ impl<const N: usize> Flow<N> {
     }
 
     fn short(a: &Square<Extended, N>, density: &Square<Extended, N>, interval: Extended) -> Self {
-        // h^k A^(k−1) / k!, and h^k/k! of the k-th derivative of the noise: P ← A P + P Aᵀ.
+        // Terms h^k A^(k−1) / k!, and h^k/k! times the k-th derivative of the noise, by P ← A P + P Aᵀ.
         let mut term = Square::<Extended, N>::identity().map(|value| value * interval);
         let mut noise_term = density.map(|value| value * interval);
         let mut integral = term;

@@ -14,11 +14,13 @@ use nalgebra::{Complex, SMatrix, SVector};
 
 type Wide = Complex<Extended>;
 
-/// Steps a single eigenvalue may take.
+/// Limit on the QR steps for a single eigenvalue.
 const MOST_STEPS: u32 = 200;
 
-/// The eigenvalues of a matrix, computed with 106 bits: right to the last place of a double even where they lie
-/// so close together that a computation in doubles keeps none.
+/// The eigenvalues of a matrix, computed with 106 bits.
+///
+/// They are correct to the last place of a double even where they lie so close together that a computation in doubles
+/// would keep no digit.
 ///
 /// # Errors
 /// [`Error::NotFinite`] or [`Error::NotConverged`].
@@ -55,12 +57,12 @@ pub(crate) fn eigenvalues_extended<const N: usize>(
     Ok(values)
 }
 
-/// An eigenvector of length 1, by inverse iteration a little beside its eigenvalue.
+/// An eigenvector of length 1, by inverse iteration slightly beside its eigenvalue.
 pub(crate) fn eigenvector<const N: usize>(
     matrix: &Square<Wide, N>,
     eigenvalue: Wide,
 ) -> Option<SVector<Wide, N>> {
-    // Exactly at the eigenvalue there would be nothing to divide by.
+    // Exactly at the eigenvalue, the matrix would be singular.
     let beside = eigenvalue + Complex::from(Extended::from(1e-24));
     let distance = Eliminated::new(&shifted(matrix, beside))?;
     let mut vector = oblique();
@@ -71,7 +73,7 @@ pub(crate) fn eigenvector<const N: usize>(
 }
 
 fn spectrum<const N: usize>(matrix: &Square<Wide, N>) -> Result<[Wide; N], Error> {
-    // Scaled by a power of two, so that no square overflows or vanishes.
+    // Scaled by a power of two, so that no square overflows or underflows.
     let scale = power_of_two(norm(matrix));
     let mut h = matrix.map(|value| value.scaled(Extended::from(1.0 / scale)));
     reduce(&mut h);
@@ -87,7 +89,7 @@ fn spectrum<const N: usize>(matrix: &Square<Wide, N>) -> Result<[Wide; N], Error
                 return Err(Error::NotConverged);
             }
             steps += 1;
-            // An exceptional shift now and then breaks a cycle.
+            // An occasional exceptional shift breaks cycles.
             let shift = if steps % 15 == 0 {
                 let beside = element(&h, end - 1, end - 2).magnitude();
                 element(&h, end - 1, end - 1) + Complex::from(Extended::from(beside))
@@ -104,7 +106,7 @@ fn spectrum<const N: usize>(matrix: &Square<Wide, N>) -> Result<[Wide; N], Error
     Ok(values)
 }
 
-/// Element of a matrix; zero outside of it.
+/// An element of a matrix; zero outside of it.
 fn element<T: Number, const N: usize>(h: &Square<T, N>, row: usize, column: usize) -> T {
     h.get((row, column)).copied().unwrap_or(T::zero())
 }
@@ -115,7 +117,7 @@ fn clear<T: Number, const N: usize>(h: &mut Square<T, N>, row: usize, column: us
     }
 }
 
-/// A plane rotation: unitary, and it turns (a, b) into (r, 0).
+/// A unitary plane rotation that turns (a, b) into (r, 0).
 struct Rotation {
     cosine: Wide,
     sine: Wide,
@@ -134,7 +136,7 @@ impl Rotation {
         Self { cosine: a.scaled(reciprocal), sine: b.scaled(reciprocal) }
     }
 
-    /// Rows `first` and `second`, from a column on.
+    /// Rotates rows `first` and `second`, from column `from` on.
     fn turn_rows<const N: usize>(
         &self,
         h: &mut Square<Wide, N>,
@@ -151,7 +153,8 @@ impl Rotation {
         }
     }
 
-    /// Columns `first` and `second`, down to a row: the inverse rotation, so that both make a similarity.
+    /// Rotates columns `first` and `second` inversely, above row `to`, so that both rotations form a similarity
+    /// transform.
     fn turn_columns<const N: usize>(
         &self,
         h: &mut Square<Wide, N>,
@@ -170,7 +173,7 @@ impl Rotation {
     }
 }
 
-/// Similar, and zero below the first subdiagonal.
+/// Reduces a matrix, by similarity transforms, to Hessenberg form.
 fn reduce<const N: usize>(h: &mut Square<Wide, N>) {
     for column in 0..N.saturating_sub(2) {
         for row in (column + 2..N).rev() {
@@ -182,7 +185,7 @@ fn reduce<const N: usize>(h: &mut Square<Wide, N>) {
     }
 }
 
-/// First row of the last block that no negligible subdiagonal element divides.
+/// The first row of the last block, which no negligible subdiagonal element divides.
 fn decoupled<const N: usize>(h: &mut Square<Wide, N>, end: usize, tiny: f64) -> usize {
     for row in (1..end).rev() {
         let size = |row, column| element(h, row, column).magnitude();
@@ -195,8 +198,8 @@ fn decoupled<const N: usize>(h: &mut Square<Wide, N>, end: usize, tiny: f64) -> 
     0
 }
 
-/// The eigenvalue of the last 2 × 2 block that lies nearer its last element. A double is good enough: the shift
-/// only hastens the convergence.
+/// The eigenvalue of the last 2 × 2 block that is nearer to its last element. Double precision suffices: the shift
+/// only speeds up convergence.
 fn wilkinson<const N: usize>(h: &Square<Wide, N>, end: usize) -> Wide {
     let last = |row, column| round_complex(element(h, end - row, end - column));
     let half_difference = (last(2, 2) - last(1, 1)) * 0.5;
@@ -217,7 +220,7 @@ fn square_root(value: Complex<f64>) -> Complex<f64> {
     Complex { re, im: if value.im < 0.0 { -im } else { im } }
 }
 
-/// One QR step with a shift, on the block from `start` to `end`.
+/// Makes one QR step with a shift, on the block from `start` to `end`.
 fn step<const N: usize>(h: &mut Square<Wide, N>, start: usize, end: usize, shift: Wide) {
     move_diagonal(h, start..end, -shift);
     let mut waiting: Option<(Rotation, usize)> = None;
@@ -254,7 +257,7 @@ mod tests {
 
     #[test]
     fn a_companion_matrix_has_the_roots_of_its_polynomial() {
-        // (s + 1)(s + 2)(s² + 2 s + 5)
+        // The polynomial (s + 1)(s + 2)(s² + 2 s + 5).
         let companion = Matrix4::new(
             0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, -10.0, -19.0, -13.0, -5.0,
         );
@@ -278,7 +281,7 @@ mod tests {
 
     #[test]
     fn close_eigenvalues_keep_their_digits() {
-        // A Jordan block disturbed in its corner: λ = 1 + 1e-5 · fourth roots of one.
+        // A Jordan block with a perturbed corner: λ = 1 + 1e-5 · fourth roots of one.
         let mut matrix = Matrix4::<f64>::identity();
         for index in 0..3 {
             matrix[(index, index + 1)] = 1.0;

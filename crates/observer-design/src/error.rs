@@ -1,7 +1,7 @@
 use core::fmt;
 use nalgebra::Complex;
 
-/// A mode of a linear system: one eigenvalue of its dynamics, and its largest component.
+/// A mode of a linear system: an eigenvalue of its dynamics, and the state that it moves most.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -10,21 +10,21 @@ pub struct Mode {
     pub re: f64,
     /// Imaginary part of the eigenvalue.
     pub im: f64,
-    /// The state, counted from 0, which the mode moves most (on the balanced scale).
+    /// Index of the state that the mode moves most (on the balanced scale).
     pub state: usize,
 }
 
-/// Reason for which a design was refused.
+/// Reason why a design was refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Error {
-    /// An argument, or what would have become of the answer, is NaN or infinite.
+    /// An argument or the result is NaN or infinite.
     NotFinite,
     /// The interval is not positive.
     Interval,
-    /// A complex pole stands there without its conjugate: no real gain has it.
+    /// A complex pole is given without its conjugate, so no real gain can place it.
     NotConjugate,
     /// This mode is unobservable: no output depends on it.
     Unobservable(Mode),
@@ -32,8 +32,8 @@ pub enum Error {
     Uncontrollable(Mode),
     /// This mode neither decays nor is observable.
     Undetectable(Mode),
-    /// This mode neither decays nor grows, and no noise drives it: the filter would learn it once and for all,
-    /// and no steady gain is left.
+    /// This mode neither decays nor grows, and no noise drives it: the filter would learn it perfectly,
+    /// and no steady gain would remain.
     Undriven(Mode),
     /// This mode does not decay.
     Unstable(Mode),
@@ -41,11 +41,11 @@ pub enum Error {
     NotSymmetric,
     /// A covariance has a negative variance, or the measurement noise is zero in some direction.
     NotPositive,
-    /// A matrix that has to be inverted is singular.
+    /// A matrix that must be inverted is singular.
     Singular,
-    /// A gain of double precision cannot hold these poles: the best one leaves a pole off by this fraction.
+    /// No gain of double precision can place these poles: with the best one, a pole is off by this fraction.
     IllConditioned(f64),
-    /// An iteration did not settle.
+    /// An iteration did not converge.
     NotConverged,
 }
 
@@ -60,12 +60,12 @@ impl fmt::Display for Mode {
     }
 }
 
-/// Rounded to eight digits of `size`; what rounding has made of zero is zero again.
+/// The value rounded to eight digits of `size`; residues of rounding become zero.
 fn legible(value: f64, size: f64) -> f64 {
     if size < 1e-15 {
         return 0.0;
     }
-    // Ten to a positive power is exact, its reciprocal is not.
+    // Ten to a positive power is exact, but its reciprocal is not.
     let digits = 7.0 - libm::floor(libm::log10(size));
     let power = libm::exp10(digits.abs());
     let rounded = if digits < 0.0 {
@@ -73,7 +73,7 @@ fn legible(value: f64, size: f64) -> f64 {
     } else {
         libm::round(value * power) / power
     };
-    // No minus sign before zero.
+    // Avoids a minus sign before zero.
     rounded + 0.0
 }
 
@@ -113,7 +113,7 @@ impl Mode {
         Self { re: pole.re, im: pole.im, state }
     }
 
-    /// The same mode, found twice, or the other of a conjugate pair.
+    /// Whether this is the same mode found twice, or the other one of a conjugate pair.
     pub(crate) fn is_twin_of(&self, other: &Self) -> bool {
         let distance = libm::hypot(self.re - other.re, self.im.abs() - other.im.abs());
         self.state == other.state && distance <= 1e-6 * libm::hypot(self.re, self.im).max(1e-6)

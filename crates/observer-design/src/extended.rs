@@ -1,30 +1,30 @@
 //! Numbers of 106 bits.
 //!
-//! Placing poles that lie close together, or seeing a state through three integrations of a millisecond each,
+//! Placing poles that lie close together, or observing a state through three integrations of a millisecond each,
 //! costs more digits than a double has. The design therefore computes with unevaluated sums of two doubles and
-//! rounds its answer once. `twofloat` 0.8.4 would do, were it not that its quotients are good to 54 bits only
-//! (1/3 · 3 − 1 = −5.6e-17); and it multiplies by `fma`, which is slow software on most targets.
+//! rounds its result once. `twofloat` 0.8.4 would serve, except that its quotients are only accurate to 54 bits
+//! (1/3 · 3 − 1 = −5.6e-17) and that it multiplies by `fma`, which is slow software on most targets.
 //!
 //! The algorithms are those of Joldes, Muller & Popescu, "Tight and rigorous error bounds for basic building
-//! blocks of double-word arithmetic", ACM TOMS 44 (2017). Sums, products and quotients are not inlined:
-//! a fifth less flash on targets without doubles, for two in a hundred instructions more.
+//! blocks of double-word arithmetic", ACM TOMS 44 (2017). Sums, products and quotients are not inlined, which
+//! saves a fifth of the flash on targets without doubles for two per cent more instructions.
 
 use core::ops::{
     Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Rem, RemAssign, Sub, SubAssign,
 };
 use num_traits::{Num, One, Zero};
 
-/// `high + low`, where `low` is at most half a unit in the last place of `high`.
+/// The number `high + low`, where `low` is at most half a unit in the last place of `high`.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub(crate) struct Extended {
     high: f64,
     low: f64,
 }
 
-/// The distance from 1 to the next number that a computation can tell from it.
+/// Relative accuracy of computations: the distance from 1 to the next number that they can distinguish.
 pub(crate) const EPSILON: f64 = 2.5e-32;
 
-/// a + b and what rounding took from it.
+/// The rounded sum a + b, and its rounding error.
 fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let a_part = sum - b;
@@ -32,21 +32,23 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - a_part) + (b - b_part))
 }
 
-/// As [`two_sum`], where |a| ≥ |b|.
+/// [`two_sum`] for |a| ≥ |b|.
 fn fast_two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     (sum, b - (sum - a))
 }
 
-/// a · b and what rounding took from it: the product of the mantissas less the rounded one, a number so small that
-/// the low 64 bits of both tell it. Where doubles are software, Dekker's splitting is several times the work.
+/// The rounded product a · b, and its rounding error.
+///
+/// The error is the exact product of the mantissas minus the rounded one, a number so small that the low 64 bits of
+/// both determine it. In software double arithmetic, Dekker's splitting is several times the work.
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     let exponents = exponent(a) + exponent(b);
     if !(a.is_normal() && b.is_normal() && product.is_normal()) || exponents <= LEAST_EXPONENTS {
         return (product, 0.0);
     }
-    // The last place of the rounded product, counted in those of the exact one.
+    // The last place of the rounded product, in units of that of the exact one.
     let shift = exponent(product) + 1075 - exponents;
     let exact = mantissa(a).wrapping_mul(mantissa(b));
     let error = exact.wrapping_sub(mantissa(product) << shift) as i64 as f64;
@@ -57,15 +59,15 @@ fn two_product(a: f64, b: f64) -> (f64, f64) {
     (product, f64::from_bits(scaled ^ (product.to_bits() & (1 << 63))))
 }
 
-/// The sum of the biased exponents of two factors above which the error of their product is no subnormal number.
+/// Sum of the biased exponents of two factors above which the error of their product is not subnormal.
 const LEAST_EXPONENTS: u64 = 2 * 1075 - 1023;
 
-/// The biased exponent.
+/// The biased exponent of a double.
 fn exponent(a: f64) -> u64 {
     a.to_bits() >> 52 & 0x7ff
 }
 
-/// The 53 bits of a normal number.
+/// The 53-bit mantissa of a normal number.
 fn mantissa(a: f64) -> u64 {
     a.to_bits() & ((1 << 52) - 1) | 1 << 52
 }
@@ -76,7 +78,7 @@ impl Extended {
         self.high
     }
 
-    /// √x; of nothing positive 0.
+    /// √x; 0 if x is not positive.
     pub(crate) fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Self::zero();
@@ -150,7 +152,7 @@ impl Div for Extended {
     type Output = Self;
     #[inline(never)]
     fn div(self, other: Self) -> Self {
-        // Long division in base 2⁵³: three digits, of which two are kept.
+        // Long division in base 2⁵³: three digits, two of which are kept.
         let first = self.high / other.high;
         let rest = self - other * Self::from(first);
         let second = rest.high / other.high;
@@ -196,7 +198,7 @@ impl One for Extended {
 
 impl Num for Extended {
     type FromStrRadixErr = num_traits::ParseFloatError;
-    /// The number, as far as a double holds it.
+    /// Parses a number with the precision of a double.
     fn from_str_radix(text: &str, radix: u32) -> Result<Self, Self::FromStrRadixErr> {
         <f64 as Num>::from_str_radix(text, radix).map(Self::from)
     }

@@ -1,4 +1,4 @@
-//! The covariance at which errors settle.
+//! The covariance at which an error settles.
 
 use crate::Error;
 use crate::covariance::checked;
@@ -11,17 +11,17 @@ use crate::number::{
 use crate::observability::dominant;
 use nalgebra::{Complex, SMatrix};
 
-/// Doublings after which the slowest mode a double can hold has settled.
+/// Limit on the doublings, enough for the slowest mode that a double can represent to settle.
 const MOST_DOUBLINGS: u32 = 64;
 
-/// Share of the start below which the sum has settled.
+/// Norm of the transition below which the sum has settled.
 const SETTLED: f64 = 1e-20;
 
-/// P of P = F P Fᵀ + Q, by doubling (Smith 1968).
+/// Solves P = F P Fᵀ + Q for P, by doubling (Smith 1968).
 ///
 /// # Errors
-/// [`Error::Unstable`] with the mode of F that does not decay, [`Error::NotFinite`], [`Error::NotSymmetric`] or
-/// [`Error::NotPositive`] of Q.
+/// [`Error::Unstable`] with the mode of F that does not decay, [`Error::NotFinite`], and [`Error::NotSymmetric`] or
+/// [`Error::NotPositive`] for Q.
 pub fn lyapunov<const N: usize>(
     f: &SMatrix<f64, N, N>,
     q: &SMatrix<f64, N, N>,
@@ -33,12 +33,14 @@ pub fn lyapunov<const N: usize>(
     settled(&extend(f), &noise)
 }
 
-/// The covariance of the error of x̂⁺ = A x̂ + B u + L (y − C x̂), where noise G w with covariance Q of w disturbs
-/// the plant in every step, and R is the covariance of its outputs' noise: its diagonal holds the squares of the
-/// expected RMSE. For noise on the inputs G is B, for noise on the states it is the identity.
+/// The covariance of the error of the observer x̂⁺ = A x̂ + B u + L (y − C x̂).
+///
+/// In every step, noise G w, where w has covariance Q, disturbs the plant; R is the covariance of the noise of the
+/// outputs. The diagonal of the result holds the squares of the expected RMSE. For noise on the inputs G is B, for
+/// noise on the states it is the identity.
 ///
 /// # Errors
-/// As [`lyapunov`], of A − L C, Q and R.
+/// As [`lyapunov`], for A − L C, Q and R.
 pub fn error_covariance<const N: usize, const M: usize, const P: usize>(
     observed: (&SMatrix<f64, N, N>, &SMatrix<f64, P, N>),
     gain: &SMatrix<f64, N, P>,
@@ -80,7 +82,7 @@ pub(crate) fn stable<const N: usize>(f: &Square<Extended, N>) -> Result<(), Erro
     let values = eigenvalues_extended(f)?;
     let radius = |value: &Complex<Extended>| (value.re * value.re + value.im * value.im).to_f64();
     match values.iter().max_by(|a, b| radius(a).total_cmp(&radius(b))) {
-        // A radius that is not a number does not pass.
+        // A NaN radius fails as well.
         Some(largest) if radius(largest).total_cmp(&1.0).is_ge() => {
             let state = eigenvector(&complex(f), *largest).map_or(0, |vector| dominant(&vector));
             Err(Error::Unstable(Mode::new(round_complex(*largest), state)))

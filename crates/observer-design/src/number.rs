@@ -1,4 +1,4 @@
-//! Numbers of the linear algebra inside: real or complex, of 53 or 106 bits.
+//! Number types of the linear algebra: real or complex, with 53 or 106 bits.
 
 use core::ops::Neg;
 
@@ -9,16 +9,16 @@ use num_traits::NumAssign;
 
 /// A field element that can be ordered by magnitude.
 pub(crate) trait Number: nalgebra::Scalar + Copy + NumAssign + Neg<Output = Self> {
-    /// The real number it is made of.
+    /// The type of the real and imaginary parts.
     type Real: Real;
 
-    /// |x|, as far as a double can tell.
+    /// |x|, with the precision of a double.
     fn magnitude(self) -> f64;
     /// The complex conjugate.
     fn conjugate(self) -> Self;
     /// |x|².
     fn squared(self) -> Self::Real;
-    /// r x.
+    /// r x, the product with a real factor.
     fn scaled(self, factor: Self::Real) -> Self;
 }
 
@@ -97,28 +97,28 @@ impl<R: Real> Number for Complex<R> {
 /// A square matrix.
 pub(crate) type Square<T, const N: usize> = SMatrix<T, N, N>;
 
-/// Every element as a number of 106 bits.
+/// The matrix with every element as a number of 106 bits.
 pub(crate) fn extend<const R: usize, const C: usize>(
     matrix: &SMatrix<f64, R, C>,
 ) -> SMatrix<Extended, R, C> {
     matrix.map(Extended::from)
 }
 
-/// Every element rounded to the nearest double.
+/// The matrix with every element rounded to the nearest double.
 pub(crate) fn round<const R: usize, const C: usize>(
     matrix: &SMatrix<Extended, R, C>,
 ) -> SMatrix<f64, R, C> {
     matrix.map(Extended::to_f64)
 }
 
-/// A real matrix among the complex ones.
+/// A real matrix as a complex one.
 pub(crate) fn complex<const R: usize, const C: usize>(
     matrix: &SMatrix<Extended, R, C>,
 ) -> SMatrix<Complex<Extended>, R, C> {
     matrix.map(Complex::from)
 }
 
-/// A complex double with more digits.
+/// A complex double as a number of 106 bits.
 pub(crate) fn extend_complex(value: Complex<f64>) -> Complex<Extended> {
     Complex { re: Extended::from(value.re), im: Extended::from(value.im) }
 }
@@ -129,11 +129,11 @@ pub(crate) fn round_complex(value: Complex<Extended>) -> Complex<f64> {
 }
 
 /// Products of matrices. Those of `nalgebra` also multiply by factors of one and add multiples of zero, which is
-/// three times the work where a number is two doubles; and they are unrolled wherever they stand, in kilobytes.
+/// three times the work for double-word numbers, and they are unrolled at every call, which takes kilobytes.
 pub(crate) trait Times<T: Number, const K: usize, const C: usize> {
     type Product;
 
-    /// A B.
+    /// The product A B.
     fn times(&self, other: &SMatrix<T, K, C>) -> Self::Product;
 }
 
@@ -163,18 +163,18 @@ pub(crate) fn adjoint<T: Number, const R: usize, const C: usize>(
     matrix.transpose().map(T::conjugate)
 }
 
-/// The largest sum of magnitudes in a column.
+/// The 1-norm: the largest sum of magnitudes of a column.
 pub(crate) fn norm<T: Number, const R: usize, const C: usize>(matrix: &SMatrix<T, R, C>) -> f64 {
     let sum = |column: &[T; R]| column.iter().map(|value| value.magnitude()).sum::<f64>();
     matrix.as_columns().iter().map(sum).fold(0.0, f64::max)
 }
 
-/// Whether every element is a number.
+/// Whether every element is finite.
 pub(crate) fn finite<const R: usize, const C: usize>(matrix: &SMatrix<f64, R, C>) -> bool {
     matrix.iter().all(|value| value.is_finite())
 }
 
-/// A with `shift` taken from its diagonal.
+/// A − `shift` · I.
 pub(crate) fn shifted<T: Number, const N: usize>(matrix: &Square<T, N>, shift: T) -> Square<T, N> {
     let mut result = *matrix;
     for index in 0..N {
@@ -183,13 +183,13 @@ pub(crate) fn shifted<T: Number, const N: usize>(matrix: &Square<T, N>, shift: T
     result
 }
 
-/// ½ (A + Aᵀ).
+/// The symmetric part ½ (A + Aᵀ).
 pub(crate) fn symmetrised<const N: usize>(matrix: &Square<Extended, N>) -> Square<Extended, N> {
     let half = Extended::from(0.5);
     (matrix + matrix.transpose()).map(|value| value * half)
 }
 
-/// The power of two below a size; 1 where there is none.
+/// The largest power of two not above `size`; 1 if `size` is not a normal number.
 pub(crate) fn power_of_two(size: f64) -> f64 {
     const EXPONENT: u64 = 0x7FF << 52;
     if size.is_normal() { f64::from_bits(size.to_bits() & EXPONENT) } else { 1.0 }

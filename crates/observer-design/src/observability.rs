@@ -10,15 +10,15 @@ use crate::pair::Pair;
 use crate::solve::Eliminated;
 use nalgebra::{Complex, SMatrix, SVector};
 
-/// Observability of the least observable mode: the smallest singular value that [A − λ; C] has at an
-/// eigenvalue λ, on a balanced scale on which A (without its mean diagonal) and C have size 1.
+/// Observability of the least observable mode, by the test of Popov, Belevitch and Hautus.
 ///
-/// The test of Popov, Belevitch and Hautus. The rank of [C; CA; …] and its determinant say little: at 100 Hz,
-/// powers of A are so alike that the determinant of a perfectly observable aircraft vanishes in rounding.
+/// It is the smallest singular value of [A − λ; C] at an eigenvalue λ, on a balanced scale on which A (without its mean
+/// diagonal) and C have size 1. The rank and the determinant of [C; CA; …] say little: at 100 Hz, powers of A are so
+/// alike that the determinant of a perfectly observable aircraft vanishes in rounding.
 ///
 /// # Errors
-/// [`Error::Unobservable`] with the mode that nothing sees, if the singular value is no larger than what the
-/// rounding of A and C to doubles explains; [`Error::NotFinite`]; [`Error::NotConverged`].
+/// [`Error::Unobservable`] with the mode that no output sees, if the singular value is no larger than
+/// rounding of A and C to doubles can explain; [`Error::NotFinite`]; [`Error::NotConverged`].
 pub fn observability<const N: usize, const P: usize>(
     a: &SMatrix<f64, N, N>,
     c: &SMatrix<f64, P, N>,
@@ -30,7 +30,7 @@ pub fn observability<const N: usize, const P: usize>(
     }
 }
 
-/// The modes that no output sees, each once; `None` in the places that are left.
+/// The modes that no output sees, each once, followed by `None` in the remaining places.
 ///
 /// # Errors
 /// [`Error::NotFinite`]; [`Error::NotConverged`].
@@ -58,7 +58,7 @@ pub(crate) fn hidden<const N: usize>(pair: &Pair<N>) -> Result<[Option<Mode>; N]
 /// Controllability of the least controllable mode: the [`observability`] of (Aᵀ, Bᵀ).
 ///
 /// # Errors
-/// [`Error::Uncontrollable`] with the mode that nothing moves; [`Error::NotFinite`]; [`Error::NotConverged`].
+/// [`Error::Uncontrollable`] with the mode that no input moves; [`Error::NotFinite`]; [`Error::NotConverged`].
 pub fn controllability<const N: usize, const M: usize>(
     a: &SMatrix<f64, N, N>,
     b: &SMatrix<f64, N, M>,
@@ -69,13 +69,13 @@ pub fn controllability<const N: usize, const M: usize>(
     })
 }
 
-/// Observability of the least observable mode, and that mode if rounding explains its observability.
+/// Observability of the least observable mode, and that mode itself if it counts as hidden.
 pub(crate) fn least_visible<const N: usize>(pair: &Pair<N>) -> Result<(f64, Option<Mode>), Error> {
     let worst = sights(pair)?.into_iter().min_by(|(a, _), (b, _)| a.total_cmp(b));
     Ok(worst.unwrap_or((f64::INFINITY, None)))
 }
 
-/// Observability of each mode, and the mode if rounding explains its observability.
+/// Observability of each mode, and the mode itself if it counts as hidden: if rounding can explain its observability.
 fn sights<const N: usize>(pair: &Pair<N>) -> Result<[(f64, Option<Mode>); N], Error> {
     // A shift of the diagonal changes no eigenvector, and at high rates A is nearly the identity.
     let mut mean = Extended::from(0.0);
@@ -84,7 +84,7 @@ fn sights<const N: usize>(pair: &Pair<N>) -> Result<[(f64, Option<Mode>); N], Er
     }
     mean /= Extended::from(N as f64);
     let centred = shifted(&pair.dynamics, mean);
-    // A multiple of the identity is nothing once it is centred, but rounded like any other matrix.
+    // A multiple of the identity vanishes when centred, but its rounding does not.
     let size = |norm: f64, otherwise: f64| if norm > 0.0 { norm } else { otherwise };
     let whole = norm(&pair.dynamics);
     let spread = size(norm(&centred), size(whole, 1.0));
@@ -106,12 +106,12 @@ fn sights<const N: usize>(pair: &Pair<N>) -> Result<[(f64, Option<Mode>); N], Er
     Ok(sights)
 }
 
-/// Limit of the iterations in which λ follows the vector: at a multiple mode, each halves the distance.
+/// Limit on the iterations in which λ follows the vector: at a multiple mode, each halves the distance.
 const FOLLOWED: u32 = 80;
 
-/// The smallest singular value of [A − λ; C] near an eigenvalue, where it is reached, and with which vector.
+/// The smallest singular value of [A − λ; C] near an eigenvalue, the λ at which it is reached, and its vector.
 ///
-/// An eigenvalue that is several at once is only known roughly: λ follows the singular vector to the place where
+/// A multiple eigenvalue is only known roughly, so λ follows the singular vector to where
 /// the singular value is smallest.
 fn visibility<const N: usize>(
     dynamics: &Square<Complex<Extended>, N>,
@@ -124,7 +124,7 @@ fn visibility<const N: usize>(
     let mut best: Option<(f64, Complex<Extended>, SVector<Complex<Extended>, N>)> = None;
     for _ in 0..FOLLOWED {
         let distance = shifted(dynamics, at);
-        // The little on the diagonal keeps an exactly singular matrix from stopping the inverse iteration.
+        // The small diagonal term keeps an exactly singular matrix from stopping the inverse iteration.
         let gram = Eliminated::new(&shifted(
             &(adjoint(&distance).times(&distance) + outputs_squared),
             Complex::from(Extended::from(-1e-30)),
@@ -147,7 +147,7 @@ fn visibility<const N: usize>(
     best
 }
 
-/// The state in which a mode is seen most.
+/// The index of the state that has the largest part in a mode.
 pub(crate) fn dominant<const N: usize>(vector: &SVector<Complex<Extended>, N>) -> usize {
     let sizes = vector.iter().map(|value| value.norm_sqr().rounded()).enumerate();
     sizes.max_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(state, _)| state)

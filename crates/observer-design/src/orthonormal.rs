@@ -5,8 +5,8 @@ use crate::number::{Number, Real, Square};
 use kestirim_scalar::{Columns, Components};
 use nalgebra::{Complex, SVector};
 
-/// A basis of the whole space whose first `count` vectors span, one after the other, the first `count` columns;
-/// nothing where these are linearly dependent. The other vectors span what is orthogonal to them.
+/// An orthonormal basis of the whole space, whose first k vectors span the first k columns for each k up to `count`;
+/// `None` if these columns are linearly dependent. The remaining vectors span the orthogonal complement.
 pub(crate) fn complete<T: Number, const N: usize>(
     columns: &Square<T, N>,
     count: usize,
@@ -25,7 +25,7 @@ pub(crate) fn complete<T: Number, const N: usize>(
     Some(basis)
 }
 
-/// The unit vector of the axis that lies farthest from the first `count` vectors, made orthogonal to them.
+/// The unit vector of the axis farthest from the span of the first `count` vectors, made orthogonal to them.
 fn farthest<T: Number, const N: usize>(
     basis: &Square<T, N>,
     count: usize,
@@ -41,8 +41,8 @@ fn farthest<T: Number, const N: usize>(
     normalised(&residual(&unit, basis, count), 0.0)
 }
 
-/// Part of a vector orthogonal to the first `count` vectors of a basis; projected twice, as once leaves
-/// rounding behind.
+/// The part of a vector orthogonal to the first `count` vectors of a basis. Projected twice, because one projection
+/// leaves rounding behind.
 fn residual<T: Number, const N: usize>(
     vector: &SVector<T, N>,
     basis: &Square<T, N>,
@@ -59,17 +59,17 @@ fn residual<T: Number, const N: usize>(
     rest
 }
 
-/// aᴴ b.
+/// The inner product aᴴ b.
 pub(crate) fn inner<T: Number, const N: usize>(a: &SVector<T, N>, b: &SVector<T, N>) -> T {
     a.iter().zip(b.iter()).fold(T::zero(), |sum, (&a, &b)| sum + a.conjugate() * b)
 }
 
-/// ‖a‖.
+/// The Euclidean norm ‖a‖.
 pub(crate) fn length<T: Number, const N: usize>(a: &SVector<T, N>) -> T::Real {
     a.iter().fold(T::Real::from(0.0), |sum, &value| sum + value.squared()).square_root()
 }
 
-/// A vector of length 1; nothing where it is no longer than `least`.
+/// The vector scaled to length 1; `None` if its length is at most `least`, or not finite.
 pub(crate) fn normalised<T: Number, const N: usize>(
     vector: &SVector<T, N>,
     least: f64,
@@ -80,7 +80,7 @@ pub(crate) fn normalised<T: Number, const N: usize>(
     long_enough.then(|| vector.map(|value| value.scaled(reciprocal)))
 }
 
-/// A vector along no axis, from which an inverse iteration can start.
+/// A vector along no axis, as a start of inverse iterations.
 pub(crate) fn oblique<const N: usize>() -> SVector<Complex<Extended>, N> {
     SVector::from_fn(|index, _| Complex::from(Extended::from(1.0 + index as f64 / 7.0)))
 }

@@ -1,4 +1,4 @@
-//! A pair (A, C) made ready for numbers: dependent outputs are merged, and units are evened out.
+//! A pair (A, C) conditioned for computation: dependent outputs are merged, and units are balanced.
 
 use crate::Error;
 use crate::extended::Extended;
@@ -7,21 +7,22 @@ use crate::orthonormal::{inner, length};
 use kestirim_scalar::{Columns, Components};
 use nalgebra::{Complex, SMatrix, SVector};
 
-/// x = D x̃ with powers of two D: Ã = D⁻¹ A D and S = W C D, where W has as many rows as C has independent ones.
+/// A balanced pair: with x = D x̃, where D holds powers of two, Ã = D⁻¹ A D and S = W C D. W has as many rows as C has
+/// independent ones.
 pub(crate) struct Pair<const N: usize> {
-    /// Ã.
+    /// Ã, the balanced dynamics.
     pub(crate) dynamics: Square<Extended, N>,
-    /// S in the first `rank` rows, zeros below.
+    /// S, the balanced outputs, in the first `rank` rows; zeros below.
     pub(crate) outputs: Square<Extended, N>,
     /// Number of independent outputs.
     pub(crate) rank: usize,
     scale: [Extended; N],
 }
 
-/// W, which makes independent outputs of those that there are.
+/// W, which combines the outputs to independent ones.
 pub(crate) struct Merging<const N: usize, const P: usize>(SMatrix<Extended, P, N>);
 
-/// Largest column that rounding explains, relative to the longest one.
+/// Largest length of a column attributed to rounding, relative to the longest column.
 const NEGLIGIBLE: f64 = 1e-13;
 
 impl<const N: usize> Pair<N> {
@@ -40,7 +41,7 @@ impl<const N: usize> Pair<N> {
         Ok((pair, merging))
     }
 
-    /// Evens out rows and columns (Osborne 1960), the outputs counting among the columns.
+    /// Balances rows and columns (Osborne 1960), where the outputs count as part of the columns.
     fn balance(&mut self) {
         for _ in 0..50 {
             let mut settled = true;
@@ -56,7 +57,7 @@ impl<const N: usize> Pair<N> {
         }
     }
 
-    /// The power of two by which a state has to be rescaled, if any.
+    /// The power of two by which a state must be rescaled, if any.
     fn evening(&self, state: usize) -> Option<f64> {
         let size = |value: &Extended| value.to_f64().abs();
         let (driven, seen) =
@@ -70,7 +71,7 @@ impl<const N: usize> Pair<N> {
                 row += size(driving);
             }
         }
-        // What nothing drives may be scaled at will: to where its effect is of the size of its own motion.
+        // A state that nothing drives can be scaled freely: its effect is made as large as its own motion.
         if row == 0.0 {
             row = driven.get(state).map_or(0.0, size);
         }
@@ -92,7 +93,7 @@ impl<const N: usize> Pair<N> {
         }
     }
 
-    /// L of x⁺ = A x + L (y − C x) from L̃ of the pair, whose columns beyond the rank are not looked at.
+    /// L of x⁺ = A x + L (y − C x) from L̃ of the balanced pair, whose columns beyond the rank are ignored.
     pub(crate) fn gain<const P: usize>(
         &self,
         gain: &Square<Extended, N>,
@@ -101,12 +102,12 @@ impl<const N: usize> Pair<N> {
         self.gain_out(&gain.times(&merging.transpose()))
     }
 
-    /// D⁻¹ M D of a matrix of the original states.
+    /// D⁻¹ M D: a matrix over the original states on the balanced scale.
     pub(crate) fn balanced(&self, matrix: &Square<Extended, N>) -> Square<Extended, N> {
         SMatrix::from_fn(|row, column| matrix[(row, column)] * self.scale[column] / self.scale[row])
     }
 
-    /// C D.
+    /// C D: the rows of C on the balanced scale.
     pub(crate) fn scaled<const P: usize>(
         &self,
         outputs: &SMatrix<Extended, P, N>,
@@ -114,7 +115,7 @@ impl<const N: usize> Pair<N> {
         SMatrix::from_fn(|row, column| outputs[(row, column)] * self.scale[column])
     }
 
-    /// D L̃.
+    /// D L̃: a gain on the original scale.
     pub(crate) fn gain_out<const P: usize>(
         &self,
         gain: &SMatrix<Extended, N, P>,
@@ -122,19 +123,19 @@ impl<const N: usize> Pair<N> {
         SMatrix::from_fn(|row, column| gain[(row, column)] * self.scale[row])
     }
 
-    /// D⁻¹ P D⁻¹.
+    /// D⁻¹ P D⁻¹: a covariance on the balanced scale.
     pub(crate) fn covariance_in(&self, matrix: &Square<Extended, N>) -> Square<Extended, N> {
         SMatrix::from_fn(|row, column| {
             matrix[(row, column)] / (self.scale[row] * self.scale[column])
         })
     }
 
-    /// D P̃ D.
+    /// D P̃ D: a covariance on the original scale.
     pub(crate) fn covariance_out(&self, matrix: &Square<Extended, N>) -> Square<Extended, N> {
         SMatrix::from_fn(|row, column| matrix[(row, column)] * self.scale[row] * self.scale[column])
     }
 
-    /// D x̃.
+    /// D x̃: a vector of states on the original scale.
     pub(crate) fn unbalanced(
         &self,
         vector: &SVector<Complex<Extended>, N>,
@@ -142,7 +143,7 @@ impl<const N: usize> Pair<N> {
         SVector::from_fn(|state, _| vector[state].scaled(self.scale[state]))
     }
 
-    /// ỹ D⁻¹.
+    /// ỹ D⁻¹: a row over the states on the original scale.
     pub(crate) fn unbalanced_row(
         &self,
         row: &SVector<Complex<Extended>, N>,
@@ -150,13 +151,13 @@ impl<const N: usize> Pair<N> {
         SVector::from_fn(|state, _| row[state].scaled(Extended::from(1.0) / self.scale[state]))
     }
 
-    /// ‖S‖.
+    /// ‖S‖, the norm of the balanced outputs.
     pub(crate) fn outputs_norm(&self) -> f64 {
         norm(&self.outputs)
     }
 }
 
-/// C = Q S with orthonormal columns Q, after every output was brought to length 1.
+/// Factors C = Q S with orthonormal columns Q, after every output was scaled to a magnitude of about 1.
 fn merge<const N: usize, const P: usize>(
     c: &SMatrix<f64, P, N>,
 ) -> (Square<Extended, N>, usize, Merging<N, P>) {

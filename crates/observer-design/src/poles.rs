@@ -3,13 +3,14 @@
 use crate::Error;
 use nalgebra::Complex;
 
-/// Conjugates may differ by this much, beside their size.
+/// Largest deviation of two poles from being conjugate, relative to their magnitude.
 const SAME: f64 = 1e-12;
 
-/// A pole nearer to zero than this, beside the size of the system, is taken for zero.
+/// Magnitude, relative to the size of the system, below which a pole is taken for zero.
 const ZERO: f64 = 1e-9;
 
-/// Real poles first, then conjugate pairs side by side, each exactly conjugate; and where each stood.
+/// Sorts poles: real ones first, then conjugate pairs side by side, made exactly conjugate. Also
+/// returns their original indices.
 pub(crate) fn arrange<const N: usize>(
     poles: &[Complex<f64>; N],
 ) -> Result<([Complex<f64>; N], [usize; N]), Error> {
@@ -49,7 +50,7 @@ pub(crate) fn arrange<const N: usize>(
     Ok((arranged, origin))
 }
 
-/// |λ|.
+/// The magnitude |λ|.
 pub(crate) fn size(pole: Complex<f64>) -> f64 {
     libm::hypot(pole.re, pole.im)
 }
@@ -60,8 +61,7 @@ pub(crate) fn multiplicity<const N: usize>(poles: &[Complex<f64>; N]) -> usize {
     poles.iter().map(count).max().unwrap_or(0)
 }
 
-/// Assignment of placed to wanted poles, nearest first: `distances` has a
-/// row for every wanted one.
+/// Assigns placed poles to wanted ones, nearest first. `distances` has a row for each wanted pole.
 pub(crate) fn pair_up<const N: usize>(distances: &[[f64; N]; N]) -> [usize; N] {
     let mut partners = [None; N];
     for _ in 0..N {
@@ -86,7 +86,7 @@ pub(crate) fn pair_up<const N: usize>(distances: &[[f64; N]; N]) -> [usize; N] {
     partners.map(|partner| partner.unwrap_or(0))
 }
 
-/// Whether a pole is as good as zero, beside the size of the system.
+/// Whether a pole counts as zero, relative to the size of the system.
 pub(crate) fn is_nearly_zero(pole: Complex<f64>, system: f64) -> bool {
     size(pole) <= ZERO * system
 }

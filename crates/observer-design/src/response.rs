@@ -8,7 +8,7 @@ use crate::number::{
 use crate::solve::solve;
 use nalgebra::{Complex, SMatrix, SVector};
 
-/// ẋ = A x + B u, y = C x + D u, in continuous time.
+/// The system ẋ = A x + B u, y = C x + D u, in continuous time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -24,15 +24,15 @@ pub struct StateSpace<const N: usize, const M: usize, const P: usize> {
 }
 
 impl<const N: usize, const M: usize, const P: usize> StateSpace<N, M, P> {
-    /// A system whose inputs reach its outputs through its states only: D = 0.
+    /// A system whose inputs reach its outputs only through its states: D = 0.
     pub fn new(a: SMatrix<f64, N, N>, b: SMatrix<f64, N, M>, c: SMatrix<f64, P, N>) -> Self {
         Self { a, b, c, d: SMatrix::zeros() }
     }
 
-    /// G(s) = C (s I − A)⁻¹ B + D.
+    /// The transfer function G(s) = C (s I − A)⁻¹ B + D.
     ///
     /// # Errors
-    /// [`Error::Singular`] at a pole, [`Error::NotFinite`].
+    /// [`Error::Singular`] at a pole of the system, [`Error::NotFinite`].
     pub fn transfer(&self, s: Complex<f64>) -> Result<SMatrix<Complex<f64>, P, M>, Error> {
         if !s.re.is_finite() || !s.im.is_finite() || !self.is_finite() {
             return Err(Error::NotFinite);
@@ -45,8 +45,10 @@ impl<const N: usize, const M: usize, const P: usize> StateSpace<N, M, P> {
         if finite { Ok(response) } else { Err(Error::NotFinite) }
     }
 
-    /// G(jω): modulus and argument are what a Bode diagram shows, its [`singular_values`] the least and largest
-    /// gain over all directions of the input. ω in rad/s; at 0 it is the static gain.
+    /// The frequency response G(jω), with ω in rad/s; at 0 it is the static gain.
+    ///
+    /// A Bode diagram shows its modulus and argument; its [`singular_values`] include the smallest and the largest
+    /// gain over all directions of the input.
     ///
     /// # Errors
     /// As [`StateSpace::transfer`].
@@ -54,7 +56,7 @@ impl<const N: usize, const M: usize, const P: usize> StateSpace<N, M, P> {
         self.transfer(Complex { re: 0.0, im: omega })
     }
 
-    /// The outputs at 0, h, 2h … s after `input` was switched on, the system having been at rest; exact for any
+    /// The outputs at 0, h, 2h … s after `input` was switched on, starting from rest; exact for any
     /// interval.
     ///
     /// # Errors
@@ -69,7 +71,7 @@ impl<const N: usize, const M: usize, const P: usize> StateSpace<N, M, P> {
         self.response(discrete.a, SVector::zeros(), drive, self.d * input)
     }
 
-    /// The outputs at 0, h, 2h … s after a pulse of area `input`, without the pulse that D lets through.
+    /// The outputs at 0, h, 2h … s after a pulse of area `input`, without the pulse passed on by D.
     ///
     /// # Errors
     /// As [`StateSpace::step_response`].
@@ -100,7 +102,7 @@ impl<const N: usize, const M: usize, const P: usize> StateSpace<N, M, P> {
     }
 }
 
-/// A response, sample by sample, without end.
+/// A response, sample by sample, without an end.
 #[derive(Clone, Debug)]
 pub struct Response<const N: usize, const P: usize> {
     transition: SMatrix<f64, N, N>,
@@ -120,16 +122,16 @@ impl<const N: usize, const P: usize> Iterator for Response<N, P> {
     }
 }
 
-/// Sweeps over all pairs of columns; five or six are enough.
+/// Limit on the sweeps over all pairs of columns; five or six are usual.
 const SWEEPS: u32 = 30;
 
-/// The singular values of a matrix, largest first; zeros where it has more columns than rows.
+/// The singular values of a matrix, largest first; zeros fill up where it has more columns than rows.
 ///
-/// One-sided Jacobi rotations: small ones are as exact as large ones.
+/// Computed by one-sided Jacobi rotations, which give small values as accurately as large ones.
 pub fn singular_values<const P: usize, const M: usize>(
     matrix: &SMatrix<Complex<f64>, P, M>,
 ) -> [f64; M] {
-    // Scaled by a power of two, so that no square overflows or vanishes.
+    // Scaled by a power of two, so that no square overflows or underflows.
     let largest = matrix.iter().map(|value| value.re.abs().max(value.im.abs())).fold(0.0, f64::max);
     let scale = power_of_two(largest);
     let mut columns = matrix.map(|value| value / scale);
@@ -152,7 +154,7 @@ pub fn singular_values<const P: usize, const M: usize>(
     values
 }
 
-/// Rotates two columns into orthogonal ones; whether they were not.
+/// Makes two columns orthogonal by a rotation; returns whether they were not.
 fn orthogonalise<const P: usize, const M: usize>(
     columns: &mut SMatrix<Complex<f64>, P, M>,
     first: usize,

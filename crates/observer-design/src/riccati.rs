@@ -1,4 +1,4 @@
-//! The gain at which a Kalman filter settles.
+//! The steady-state Kalman filter.
 
 use crate::Error;
 use crate::covariance::checked;
@@ -19,28 +19,28 @@ use nalgebra::SMatrix;
 pub struct Riccati<const N: usize, const P: usize> {
     /// P⁻ = A P⁻ Aᵀ + Q − A P⁻ Cᵀ (C P⁻ Cᵀ + R)⁻¹ C P⁻ Aᵀ, the covariance before an update.
     pub prior: SMatrix<f64, N, N>,
-    /// P⁺ = (I − K C) P⁻, the covariance after it.
+    /// P⁺ = (I − K C) P⁻, the covariance after an update.
     pub posterior: SMatrix<f64, N, N>,
-    /// K = P⁻ Cᵀ (C P⁻ Cᵀ + R)⁻¹, for x̂ ← x̂⁻ + K (y − C x̂⁻).
+    /// K = P⁻ Cᵀ (C P⁻ Cᵀ + R)⁻¹, the gain of the update x̂ ← x̂⁻ + K (y − C x̂⁻).
     pub filter_gain: SMatrix<f64, N, P>,
-    /// A K, for x̂⁺ = A x̂ + B u + A K (y − C x̂).
+    /// A K, the gain of the predictor form x̂⁺ = A x̂ + B u + A K (y − C x̂).
     pub predictor_gain: SMatrix<f64, N, P>,
-    /// Doublings it took: k of them are 2ᵏ steps of the filter.
+    /// Number of doublings until convergence: k of them are equivalent to 2ᵏ steps of the filter.
     pub doublings: u32,
 }
 
 const MOST_DOUBLINGS: u32 = 64;
-/// A mode this close to the unit circle is taken to lie on it.
+/// Distance from the unit circle below which a mode is taken to lie on it.
 const ON_THE_CIRCLE: f64 = 1e-10;
-/// The last step of a solution, beside the posterior: the square of it counts.
+/// Size of the last step relative to the posterior at which a solution is accepted: only its square remains as error.
 const SETTLED: f64 = 1e-10;
-/// The covariance of a state of which little is known, beside that which one measurement leaves.
+/// Initial variance of an almost unknown state, relative to that left by one measurement.
 const DOUBT: f64 = 16.0;
-/// The least eigenvalue of a measurement noise that can be inverted, beside its variances.
+/// Smallest eigenvalue, relative to the variances, of a measurement noise that can be inverted.
 const LEAST_NOISE: f64 = 1e-13;
 
 /// Solves the Riccati equation by structure-preserving doubling (Chu, Fan, Lin & Wang, Int. J. Control 77
-/// (2004)): A may be singular, and 25 doublings do what 30 million steps of the filter would.
+/// (2004)): A may be singular, and 25 doublings replace 30 million steps of the filter.
 ///
 /// # Errors
 /// [`Error::Undetectable`] and [`Error::Undriven`] with the mode in question; [`Error::NotFinite`],
@@ -91,7 +91,7 @@ pub fn riccati<const N: usize, const P: usize>(
     if all_finite { Ok(answer) } else { Err(Error::NotFinite) }
 }
 
-/// X = Fᵀ X (I + G X)⁻¹ F + H.
+/// The Riccati equation X = Fᵀ X (I + G X)⁻¹ F + H.
 struct Equation<const N: usize> {
     f: Square<Extended, N>,
     g: Square<Extended, N>,
@@ -99,14 +99,15 @@ struct Equation<const N: usize> {
 }
 
 impl<const N: usize> Equation<N> {
-    /// The stabilising solution, and the doublings it took.
+    /// The stabilising solution, and the number of doublings.
     fn solved(&self) -> Result<(Square<Extended, N>, u32), Error> {
         if let Some((solution, doublings)) = self.doubled(self, &Square::zeros())
             && self.settles(&solution)
         {
             return Ok((solution, doublings));
         }
-        // A mode that grows without being driven is never found from a covariance of zero: begin with a doubt.
+        // A mode that grows without being driven is never found from a covariance of zero: start from an uncertain
+        // state.
         let size = norm(&self.g);
         let doubt =
             Square::<Extended, N>::identity().map(|value| value * Extended::from(DOUBT / size));
@@ -115,7 +116,7 @@ impl<const N: usize> Equation<N> {
         if self.settles(&solution) { Ok((solution, doublings)) } else { Err(Error::NotConverged) }
     }
 
-    /// The solution of `whole`, where this is the equation of its distance to `start`.
+    /// The solution of `whole`, where `self` is the equation for its difference from `start`.
     fn doubled(
         &self,
         whole: &Self,
@@ -130,7 +131,7 @@ impl<const N: usize> Equation<N> {
             h += step;
             f = f.times(&forward);
             let prior = start + h;
-            // A posterior is no larger than its prior: most steps need no second look.
+            // The posterior is no larger than the prior, so for most steps the first comparison suffices.
             if negligible(&step, &prior) && negligible(&step, &whole.posterior(&prior)?) {
                 return Some((prior, doubling));
             }
@@ -138,12 +139,12 @@ impl<const N: usize> Equation<N> {
         None
     }
 
-    /// Posterior covariance of a measurement.
+    /// The posterior covariance after a measurement.
     fn posterior(&self, prior: &Square<Extended, N>) -> Option<Square<Extended, N>> {
         solve(&(Square::identity() + prior.times(&self.g)), prior)
     }
 
-    /// The same equation for X − Y.
+    /// The equation for X − Y that is equivalent to this one for X.
     fn beside(&self, y: &Square<Extended, N>) -> Option<Self> {
         let both = Eliminated::new(&(Square::identity() + self.g.times(y)))?;
         let (f, g) = (both.solve(&self.f), both.solve(&self.g));
@@ -151,15 +152,15 @@ impl<const N: usize> Equation<N> {
         Some(Self { f, g: symmetrised(&g), h: symmetrised(&h) })
     }
 
-    /// Whether the filter with this prior covariance forgets its past.
+    /// Whether the filter with this prior covariance is stable, and so forgets its past.
     fn settles(&self, prior: &Square<Extended, N>) -> bool {
         solve(&(Square::identity() + self.g.times(prior)), &self.f)
             .is_some_and(|closed| stable(&closed).is_ok())
     }
 }
 
-/// Whether a step was so small beside the posterior that the next one, which is quadratic in it, does not count. The
-/// prior is no measure: beside a large noise in one direction, what the gain depends on may be tiny in another.
+/// Whether a step was so small relative to the posterior that the next one, which is quadratic in it, is negligible.
+/// The prior is no measure: beside a large noise in one direction, what the gain depends on may be tiny in another.
 fn negligible<const N: usize>(step: &Square<Extended, N>, posterior: &Square<Extended, N>) -> bool {
     let mut deviations = [0.0; N];
     for (state, (deviation, column)) in
@@ -173,7 +174,7 @@ fn negligible<const N: usize>(step: &Square<Extended, N>, posterior: &Square<Ext
     })
 }
 
-/// Every mode that does not decay must be seen.
+/// Refuses a pair of which a mode that does not decay is unobservable.
 fn detectable<const N: usize>(pair: &Pair<N>) -> Result<(), Error> {
     let lasting = |mode: &Mode| libm::hypot(mode.re, mode.im) >= 1.0 - ON_THE_CIRCLE;
     match hidden(pair)?.into_iter().flatten().find(lasting) {
@@ -182,7 +183,8 @@ fn detectable<const N: usize>(pair: &Pair<N>) -> Result<(), Error> {
     }
 }
 
-/// Every mode on the unit circle must be driven by noise. What Q does not drive is the null space of its rows.
+/// Refuses a mode on the unit circle that no noise drives. The directions not driven by Q are the null space of its
+/// rows.
 fn driven<const N: usize>(a: &SMatrix<f64, N, N>, q: &SMatrix<f64, N, N>) -> Result<(), Error> {
     let (pair, _) = Pair::new(&a.transpose(), q)?;
     let undying = |mode: &Mode| (libm::hypot(mode.re, mode.im) - 1.0).abs() <= ON_THE_CIRCLE;

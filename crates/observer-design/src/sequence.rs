@@ -1,6 +1,6 @@
 //! A fixed pseudo-random sequence, for the starting points of searches.
 
-/// A linear congruential generator (Numerical Recipes' constants).
+/// A linear congruential generator with the constants of Numerical Recipes.
 pub(crate) struct Sequence(u32);
 
 impl Sequence {
@@ -10,7 +10,7 @@ impl Sequence {
         sequence
     }
 
-    /// In −1..1.
+    /// The next number, in −1..1.
     pub(crate) fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         f64::from(self.0 >> 8) / f64::from(1_u32 << 23) - 1.0

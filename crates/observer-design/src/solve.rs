@@ -6,16 +6,16 @@ use crate::number::{Number, Square};
 use kestirim_scalar::Columns;
 use nalgebra::SMatrix;
 
-/// A matrix after elimination with row exchanges, ready for any number of right sides.
+/// A matrix after elimination with row exchanges, ready for any number of right-hand sides.
 pub(crate) struct Eliminated<T: Number, const N: usize> {
-    /// Divisors on the diagonal; beside them, which multiple of the pivot's row each row lost. By columns.
+    /// Pivots on the diagonal; off it, the multiple of the pivot's row subtracted from each row. Stored by columns.
     factors: [[T; N]; N],
-    /// Row that was exchanged for each in its turn.
+    /// Index of the row exchanged at each step.
     pivots: [usize; N],
 }
 
 impl<T: Number, const N: usize> Eliminated<T, N> {
-    /// None if the matrix is singular to the last bit.
+    /// Eliminates; `None` if the matrix is singular to the last bit.
     pub(crate) fn new(matrix: &Square<T, N>) -> Option<Self> {
         let (mut a, mut pivots) = (*matrix.as_columns(), [0; N]);
         for place in 0..N {
@@ -43,7 +43,7 @@ impl<T: Number, const N: usize> Eliminated<T, N> {
         Some(Self { factors: a, pivots })
     }
 
-    /// X of A X = B.
+    /// Solves A X = B for X.
     pub(crate) fn solve<const M: usize>(&self, b: &SMatrix<T, N, M>) -> SMatrix<T, N, M> {
         let mut x = *b;
         for x in x.as_columns_mut() {
@@ -68,7 +68,7 @@ impl<T: Number, const N: usize> Eliminated<T, N> {
     }
 }
 
-/// X of A X = B; nothing where A is singular to the last bit.
+/// Solves A X = B for X; `None` if A is singular to the last bit.
 pub(crate) fn solve<T: Number, const N: usize, const M: usize>(
     a: &Square<T, N>,
     b: &SMatrix<T, N, M>,
@@ -76,12 +76,12 @@ pub(crate) fn solve<T: Number, const N: usize, const M: usize>(
     Some(Eliminated::new(a)?.solve(b))
 }
 
-/// A⁻¹.
+/// A⁻¹; `None` if A is singular to the last bit.
 pub(crate) fn inverse<T: Number, const N: usize>(a: &Square<T, N>) -> Option<Square<T, N>> {
     solve(a, &Square::identity())
 }
 
-/// Index and size of the largest element of a column, from a row down.
+/// Index and magnitude of the largest element of a column, from row `from` down.
 fn largest<T: Number>(column: &[T], from: usize) -> Option<(usize, f64)> {
     let sizes = column.iter().map(|value| value.magnitude()).enumerate().skip(from);
     sizes.reduce(|best, other| if other.1 > best.1 { other } else { best })

@@ -1,17 +1,18 @@
 //! Passes over particles in blocks that fit into registers and cache lines: arrays of a known length, so that the
-//! compiler sees no bounds and makes vector instructions of the rest.
+//! compiler needs no bounds checks and vectorises the loops.
 
 use kestirim_scalar::Scalar;
 
-/// Particles of a block.
+/// Number of particles in a block.
 pub(crate) const BLOCK: usize = 32;
 
-/// Coordinates of the points of a block.
+/// Coordinates of the points of a block, axis by axis.
 pub(crate) type Block<T, const D: usize> = [[T; BLOCK]; D];
 
-/// Coordinates of the points of a filter.
+/// A source of the coordinates of a filter's points.
 pub(crate) trait Points<T, const D: usize> {
-    /// The coordinates of `used` points from number `base` on: where they are stored, or written into `room`.
+    /// The coordinates of `used` points from index `base` on: references to where they are stored, or to `room`,
+    /// filled.
     fn load<'a>(
         &'a self,
         base: usize,
@@ -30,7 +31,7 @@ impl<T: Scalar, const D: usize, const N: usize> Points<T, D> for [[T; N]; D] {
     ) -> [&'a [T; BLOCK]; D] {
         let stored = self.each_ref().map(|axis| axis.get(base..).unwrap_or_default());
         if stored.iter().any(|rest| rest.len() < BLOCK) {
-            // The last block is not whole.
+            // The last block may be incomplete.
             for (to, from) in room.iter_mut().zip(stored) {
                 for (to, &from) in to.iter_mut().zip(from.iter().take(used)) {
                     *to = from;
@@ -45,7 +46,7 @@ impl<T: Scalar, const D: usize, const N: usize> Points<T, D> for [[T; N]; D] {
     }
 }
 
-/// Points that follow from others.
+/// Points computed from other points by a function.
 pub(crate) struct Mapped<'a, P, F> {
     pub(crate) points: &'a P,
     pub(crate) of: F,
@@ -76,12 +77,12 @@ where
     }
 }
 
-/// The point number `index` of a block.
+/// The point at position `index` of a block.
 #[inline(always)]
 pub(crate) fn gather<T: Scalar, const D: usize>(block: &[&[T; BLOCK]; D], index: usize) -> [T; D] {
     let mut point = [T::ZERO; D];
     for (coordinate, axis) in point.iter_mut().zip(block) {
-        // Always there, which the compiler does not see everywhere.
+        // Always present, which the compiler cannot prove everywhere.
         if let Some(&value) = axis.get(index) {
             *coordinate = value;
         }

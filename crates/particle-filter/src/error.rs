@@ -1,18 +1,18 @@
 use core::fmt;
 
-/// Reason for which a step was refused. Nothing was changed.
+/// Reason why a step was refused. Nothing was changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Error {
-    /// A number is NaN, infinite or on a rail of fixed point.
+    /// A number is NaN, infinite or at a limit of fixed point.
     NotFinite,
     /// A width, a weight or a deviation is negative, or a count is zero.
     NotPositive,
-    /// More particles than there is room for.
+    /// There are more particles than there is room for.
     TooMany,
-    /// Every weight is zero or not a number: nothing explains what was measured.
+    /// Every weight is zero or not a number: no particle explains the measurement.
     Degenerate,
 }
 

@@ -1,14 +1,14 @@
-//! The state of a generator of random numbers: an estimator that draws goes on as if it had not slept only if its
-//! generator does, too.
+//! Serialisation of the state of a random number generator: an estimator that draws random numbers continues as if it
+//! had not been stopped only if its generator does, too.
 //!
-//! `#[serde(with = "kestirim_particle_filter::generator")]` is for a field of type [`Xoshiro128PlusPlus`]: its own serde
-//! needs `std`.
+//! Use `#[serde(with = "kestirim_particle_filter::generator")]` on a field of type [`Xoshiro128PlusPlus`], whose own
+//! serde support needs `std`.
 
 use rand_core::SeedableRng;
 use rand_xoshiro::Xoshiro128PlusPlus;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Writes 16 bytes.
+/// Writes the 16 bytes of the generator's state.
 ///
 /// # Errors
 /// Those of the format.
@@ -19,7 +19,7 @@ pub fn serialize<S: Serializer>(
     generator.state().serialize(serializer)
 }
 
-/// Reads them; any will do.
+/// Reads the 16 bytes of a generator's state; any bytes are valid.
 ///
 /// # Errors
 /// Those of the format.

@@ -1,18 +1,18 @@
-//! The number of particles by Fox's KLD sampling (Kullback–Leibler divergence).
+//! The number of particles according to Fox's KLD sampling (Kullback–Leibler divergence).
 
 use kestirim_scalar::Scalar;
 
 use crate::{Error, Particles};
 
-/// Number of particles that keep the Kullback–Leibler divergence from the true posterior below `epsilon` with
-/// the confidence whose normal quantile is `z` (2.33 for 99 %), if the posterior occupies so many `bins`:
-/// at least one, never above `most`.
+/// The number of particles that keeps the Kullback–Leibler divergence from the true posterior below `epsilon` with
+/// the confidence whose normal quantile is `z` (2.33 for 99 %), if the posterior occupies `bins` bins.
+/// It is at least one and never above `most`.
 ///
 /// D. Fox, "Adapting the sample size in particle filters through KLD-sampling", Int. J. of Robotics Research
 /// 22(12), 2003, eq. 13 (Wilson and Hilferty's approximation of χ²).
 ///
 /// # Errors
-/// [`Error::NotPositive`] if `epsilon` is not above zero, [`Error::NotFinite`] if a number is not.
+/// [`Error::NotPositive`] if `epsilon` is not above zero, [`Error::NotFinite`] if `epsilon` or `z` is not finite.
 pub fn kld_count<T: Scalar>(bins: usize, epsilon: T, z: T, most: usize) -> Result<usize, Error> {
     if !T::all_finite(&[epsilon, z]) {
         return Err(Error::NotFinite);
@@ -29,10 +29,10 @@ pub fn kld_count<T: Scalar>(bins: usize, epsilon: T, z: T, most: usize) -> Resul
 }
 
 impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
-    /// Number of bins of these sides that hold a particle of some weight (1/1000 of the largest).
+    /// The number of bins with these sides that hold a particle of relevant weight (1/1000 of the largest).
     ///
-    /// Bins share 32·N bits by a hash, so that of k bins about k²/(64·N) are not told apart. Between update and
-    /// resampling.
+    /// Bins are hashed into 32·N bits, so that of k bins about k²/(64·N) are not told apart. To be called between
+    /// update and resampling.
     ///
     /// # Errors
     /// [`Error::NotPositive`] if a side is not above zero.
@@ -50,7 +50,7 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
             }
             let mut hash = 0_u32;
             for (coordinate, &side) in self.at(index).into_iter().zip(sides) {
-                // The half, so that the bins' borders are not where starts put their points.
+                // Offset by one half, so that borders of bins do not coincide with the points of a regular start.
                 let bin = (coordinate / side + T::HALF).to_binary(0) as u32;
                 // Knuth's multiplicative hash; the rotation lets later coordinates reach all bits.
                 hash = (hash.rotate_left(13) ^ bin).wrapping_mul(2_654_435_769);

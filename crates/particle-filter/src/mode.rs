@@ -1,19 +1,19 @@
-//! The mode of the cloud.
+//! The mode of a cloud of particles.
 
 use kestirim_scalar::Scalar;
 
 use crate::{Error, Particles};
 
-/// Number of particles that are tried as places of the mode.
+/// Number of particles tried as starting points of the search for the mode.
 const CANDIDATES: usize = 32;
-/// Mean shift converges linearly; so many steps take it to a hundredth of the bandwidth.
+/// Number of mean-shift steps: converging linearly, this many get within a hundredth of the bandwidth.
 const STEPS: usize = 12;
 
 impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
-    /// The highest peak of the density, smoothed with Epanechnikov's kernel of these half-widths: where a
-    /// posterior with several peaks has its main one, while the mean lies between them.
+    /// The highest peak of the density, smoothed with Epanechnikov's kernel of these half-widths. For a
+    /// posterior with several peaks this is the main one, while the mean lies between them.
     ///
-    /// The densest of 32 particles, then mean shift: O(44·N).
+    /// Starts at the densest of the heaviest and up to 32 other particles, and proceeds by mean shift: O(57·N).
     ///
     /// # Errors
     /// [`Error::NotPositive`] if a half-width is not above zero.
@@ -25,7 +25,7 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         let kernel = |centre: &[T; D], weight: T, state: [T; D]| {
             let mut offset = [T::ZERO; D];
             for axis in 0..D {
-                // Beyond two half-widths the kernel is zero anyway, and the square is a number.
+                // Beyond two half-widths the kernel is zero anyway, and clamping keeps the square from overflowing.
                 let distance = (state[axis] - centre[axis]).divided_by(divisors[axis]);
                 offset[axis] = distance.clamp(-T::TWO, T::TWO);
             }

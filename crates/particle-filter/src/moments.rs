@@ -4,7 +4,7 @@ use kestirim_scalar::Scalar;
 use crate::blocks::{BLOCK, Points};
 use crate::weights::{Weights, never};
 
-/// Weighted mean of a set of points, and how they spread about it.
+/// Weighted mean and covariance of a set of points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -12,7 +12,7 @@ use crate::weights::{Weights, never};
 pub struct Moments<T, const D: usize> {
     #[cfg_attr(feature = "serde", serde(serialize_with = "kestirim_snapshot::arrays::serialize"))]
     mean: [T; D],
-    /// Lower triangular F with F·Fᵀ the covariance: in the unit of the state, where a square of metres would
+    /// Lower triangular F with F·Fᵀ the covariance: in the unit of the state, as a square of metres might
     /// not fit into fixed point.
     #[cfg_attr(
         feature = "serde",
@@ -22,7 +22,7 @@ pub struct Moments<T, const D: usize> {
 }
 
 impl<T: Scalar, const D: usize> Moments<T, D> {
-    /// Moments of weighted points.
+    /// Moments of weighted points, computed on the widest vectors of the processor.
     #[inline(always)]
     pub(crate) fn of<const N: usize>(weights: &Weights<T, N>, points: &impl Points<T, D>) -> Self {
         Vectors::widest().run(Looking { weights, points })
@@ -33,7 +33,7 @@ impl<T: Scalar, const D: usize> Moments<T, D> {
         let share = weights.sum().recip();
         let (centre, reach) = extent(weights, points);
         let mean = mean(weights, points, centre);
-        // In units of the box's sides, of which all squares are numbers.
+        // Computed in units of the sides of the bounding box, so that no square overflows.
         let unit = reach.map(|reach| (reach + reach).max(T::EPSILON).divisor());
         let mut factor = weights.sums(points, |weight, point| {
             let mut pairs = [[(T::ZERO, T::ZERO); D]; D];
@@ -79,8 +79,8 @@ impl<T: Scalar, const D: usize> Moments<T, D> {
         T::norm(&self.deviation())
     }
 
-    /// The covariance matrix, rows first. In fixed point, where a square does not fit, its entry is on a
-    /// rail: ask for [`Moments::factor`].
+    /// The covariance matrix, rows first. In fixed point, an entry whose square does not fit saturates:
+    /// use [`Moments::factor`] there.
     #[inline]
     pub fn covariance(&self) -> [[T; D]; D] {
         let mut covariance = [[T::ZERO; D]; D];
@@ -93,7 +93,7 @@ impl<T: Scalar, const D: usize> Moments<T, D> {
     }
 }
 
-/// The moments of some points.
+/// The computation of moments, as a kernel for vectors.
 pub(crate) struct Looking<'a, T, P, const D: usize, const N: usize> {
     pub(crate) weights: &'a Weights<T, N>,
     pub(crate) points: &'a P,
@@ -110,8 +110,8 @@ impl<T: Scalar, P: Points<T, D>, const D: usize, const N: usize> Kernel
     }
 }
 
-/// The weighted mean, summed about a point in the midst, so that sums of far coordinates neither overflow nor
-/// round.
+/// The weighted mean, summed relative to a point among the others, so that sums of large coordinates neither overflow
+/// nor lose precision.
 #[inline(always)]
 pub(crate) fn mean<T: Scalar, const D: usize, const N: usize>(
     weights: &Weights<T, N>,
@@ -133,7 +133,7 @@ pub(crate) fn mean<T: Scalar, const D: usize, const N: usize>(
     mean
 }
 
-/// The middle of the box around all points of any weight, and half of its sides.
+/// The centre of the bounding box of all points with nonzero weight, and half of its sides.
 #[inline(always)]
 fn extent<T: Scalar, const D: usize, const N: usize>(
     weights: &Weights<T, N>,
@@ -150,7 +150,7 @@ fn extent<T: Scalar, const D: usize, const N: usize>(
     (centre, reach)
 }
 
-/// The box around the points whose weight's logarithm is wanted.
+/// The bounding box, as its two corners, of the points whose logarithmic weight is `wanted`.
 #[inline(always)]
 pub(crate) fn bounds<T: Scalar, const D: usize, const N: usize>(
     weights: &Weights<T, N>,
@@ -178,8 +178,8 @@ pub(crate) fn bounds<T: Scalar, const D: usize, const N: usize>(
     )
 }
 
-/// Cholesky factor of the lower triangle, in place. A column whose pivot is not positive becomes zero: the points lie
-/// in a plane of fewer dimensions.
+/// Cholesky factorisation of the lower triangle, in place. A column whose pivot is not positive becomes zero: the
+/// points then lie in a subspace of fewer dimensions.
 #[inline(always)]
 fn cholesky<T: Scalar, const D: usize>(matrix: &mut [[T; D]; D]) {
     for column in 0..D {

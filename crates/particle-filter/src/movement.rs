@@ -1,4 +1,4 @@
-//! Motion, and measures against impoverishment: jitter, a kernel that shrinks with the cloud, Metropolis moves.
+//! Motion, and measures against impoverishment: jitter, a kernel that shrinks with the cloud, and Metropolis moves.
 
 use kestirim_scalar::Scalar;
 use rand_core::Rng;
@@ -6,11 +6,11 @@ use rand_core::Rng;
 use crate::random::{normal_point, uniform};
 use crate::{Error, Particles};
 
-/// Number of proposals that are judged at a time.
+/// Number of proposals evaluated together.
 const BLOCK: usize = 16;
 
 impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
-    /// Moves each particle: `motion` of its state and of K nearly normal random numbers (zero mean, variance
+    /// Moves each particle by `motion`, a function of its state and K nearly normal random numbers (zero mean, variance
     /// one, within ±3).
     #[inline(always)]
     pub fn predict<const K: usize, R: Rng + ?Sized>(
@@ -25,9 +25,9 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         }
     }
 
-    /// Adds noise of these standard deviations: the thesis' jitter, line 15 of Table 2.1.
+    /// Adds noise of these standard deviations to each particle: the thesis' jitter, line 15 of Table 2.1.
     ///
-    /// It never shrinks, so that in the end the cloud is as wide as the noise of all steps.
+    /// The noise never shrinks, so in the end the cloud is as wide as the noise of all steps.
     #[inline]
     pub fn jitter<R: Rng + ?Sized>(&mut self, deviation: &[T; D], rng: &mut R) {
         for index in 0..self.weights.count() {
@@ -38,12 +38,13 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         }
     }
 
-    /// Jitter with a kernel of the cloud's own shape, which shrinks with it, and towards the mean, so that
-    /// mean and covariance stay: Liu and West's kernel with Silverman's width times `scale` (1 suits a
+    /// Moves each particle towards the mean and adds noise of the cloud's own shape, which shrinks with it, such that
+    /// mean and covariance are preserved: Liu and West's kernel with Silverman's width times `scale` (1 suits a
     /// normal posterior; rings and crescents need less). To be called after resampling.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] or [`Error::NotPositive`] for such a scale; nothing has changed then.
+    /// [`Error::NotFinite`] or [`Error::NotPositive`] if `scale` is not finite or not positive; nothing has changed
+    /// then.
     #[inline]
     pub fn regularise<R: Rng + ?Sized>(&mut self, scale: T, rng: &mut R) -> Result<(), Error> {
         if !scale.is_finite() {
@@ -67,15 +68,15 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         Ok(())
     }
 
-    /// One Metropolis move of each particle: a step of the cloud's own shape times `scale`, accepted by
-    /// the ratio of the posteriors. Returns how many were accepted.
+    /// Makes one Metropolis move of each particle: a step of the cloud's own shape times `scale`, accepted by
+    /// the ratio of the posteriors. Returns the number of accepted moves.
     ///
-    /// `log_posterior` of a state may lack a constant; a static problem's is the sum over the stored
-    /// measurements. After resampling, a few moves make the offspring of one particle different, without
-    /// making the posterior wider (Gilks and Berzuini's resample–move). The best scale is about 2.4/√D.
+    /// `log_posterior` of a state may omit a constant; for a static problem it is the sum over the stored
+    /// measurements. After resampling, a few moves diversify the offspring of each particle without
+    /// widening the posterior (Gilks and Berzuini's resample–move). The best scale is about 2.4/√D.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] for such a scale; nothing has changed then.
+    /// [`Error::NotFinite`] if `scale` is not finite; nothing has changed then.
     #[inline(always)]
     pub fn metropolis<R: Rng + ?Sized>(
         &mut self,

@@ -3,7 +3,7 @@ use rand_core::Rng;
 
 use crate::{Error, IntegerWeights, Resample};
 
-/// Replaces integer weights by numbers of offspring, which sum up to `draws`. O(N), in place, exact.
+/// Replaces integer weights by numbers of offspring that sum up to `draws`. O(N), in place, exact.
 ///
 /// # Errors
 /// Those of [`IntegerWeights::new`].
@@ -17,22 +17,22 @@ pub(crate) fn count<R: Rng + ?Sized>(
     Ok(())
 }
 
-/// By how many bits weights are multiplied, so that N of them times N fit into 63.
+/// Number of bits by which weights are scaled, such that N of them times N fit into 63 bits.
 pub(crate) const fn bits(count: usize) -> i32 {
     let doubled = 2 * (usize::BITS - count.leading_zeros()) as i32;
     if doubled > 31 { 62 - doubled } else { 31 }
 }
 
-/// Number of offspring of each of some weights: `counts`, which sum up to their own number.
+/// Computes the number of offspring of each particle from its weight: `counts`, which sum up to their own number.
 ///
-/// Weights need not sum up to one. Integers of 31 bits stand for them (fewer beyond 32 000 weights), so that
-/// neither a cumulative sum nor its last index can be rounded wrongly, and every number type draws alike;
+/// Weights need not sum up to one. They are represented by integers of 31 bits (fewer beyond 32 000 weights), so that
+/// neither a cumulative sum nor its last index can be rounded wrongly, and all number types give the same draws;
 /// a weight below 2⁻³¹ of the largest has no offspring.
 ///
 /// # Errors
 /// [`Error::NotFinite`] or [`Error::NotPositive`] if a weight is not finite or negative,
 /// [`Error::Degenerate`] if all are zero, [`Error::TooMany`] if the slices differ in length or have more
-/// than 2²⁰ entries. Then `counts` is as it was.
+/// than 2²⁰ entries. In all cases `counts` is untouched.
 pub fn offspring<T: Scalar, R: Rng + ?Sized>(
     resampler: impl Resample,
     weights: &[T],
@@ -58,7 +58,7 @@ pub fn offspring<T: Scalar, R: Rng + ?Sized>(
     count(resampler, counts, draws, rng)
 }
 
-/// The largest weight, if all of them are weights.
+/// The largest weight, provided that all are finite and not negative.
 fn largest_of<T: Scalar>(weights: &[T]) -> Result<T, Error> {
     const LANES: usize = 8;
     let (mut largest, mut fine) = ([T::ZERO; LANES], [true; LANES]);
@@ -76,7 +76,7 @@ fn largest_of<T: Scalar>(weights: &[T]) -> Result<T, Error> {
     Err(if negative { Error::NotPositive } else { Error::NotFinite })
 }
 
-/// A weight of up to one as an integer.
+/// A weight in 0..=1 as an integer of `bits` bits.
 #[inline(always)]
 pub(crate) fn part<T: Scalar>(weight: T, bits: i32) -> u32 {
     weight.to_binary(-bits).max(0) as u32

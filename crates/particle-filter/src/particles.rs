@@ -10,7 +10,7 @@ use crate::{Error, Likelihood, Moments, Region, Resample, Start, Update};
 
 /// A weighted cloud of up to N states of D coordinates.
 ///
-/// Coordinates are stored one after the other and weights as logarithms, the largest of them zero: N·(4·D + 8)
+/// States are stored coordinate by coordinate, and weights as logarithms, the largest of them zero: N·(4·D + 8)
 /// bytes in single precision. Every step is O(N) and allocates nothing.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -25,7 +25,7 @@ pub struct Particles<T, const D: usize, const N: usize> {
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays::rows"))]
     pub(crate) states: [[T; N]; D],
     pub(crate) weights: Weights<T, N>,
-    /// Integer weights, then numbers of offspring; or occupied bins.
+    /// Buffer for integer weights, then numbers of offspring; or for occupied bins.
     #[cfg_attr(feature = "serde", serde(skip, default = "no_scratch"))]
     pub(crate) scratch: [u32; N],
 }
@@ -45,10 +45,10 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         particles
     }
 
-    /// As [`Particles::new`], with `count` particles for a start.
+    /// `count` particles that fill a region, of the N that there is room for.
     ///
     /// # Errors
-    /// [`Error::NotPositive`] for none, [`Error::TooMany`] for more than N.
+    /// [`Error::NotPositive`] if `count` is zero, [`Error::TooMany`] if it is above N.
     #[inline]
     pub fn with_count<R: Rng + ?Sized>(
         count: usize,
@@ -73,8 +73,8 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         }
     }
 
-    /// Fills a region anew and forgets all weights: after [`Error::Degenerate`], when the state may be
-    /// anywhere in it. The number of particles stays.
+    /// Fills a region anew and makes all weights equal: after [`Error::Degenerate`], when the state may be
+    /// anywhere in the region. The number of particles is kept.
     #[inline]
     pub fn spread<R: Rng + ?Sized>(&mut self, start: Start, region: &Region<T, D>, rng: &mut R) {
         let (low, width) = (region.low(), region.width());
@@ -98,20 +98,20 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         self.len() == 0
     }
 
-    /// The state of a particle.
+    /// The state of a particle; `None` beyond the last one.
     #[inline(always)]
     pub fn state(&self, index: usize) -> Option<[T; D]> {
         (index < self.len()).then(|| self.at(index))
     }
 
-    /// Logarithms of the weights; the largest is zero, that of a weight of zero −∞ (the lower rail in fixed
+    /// Logarithms of the weights; the largest is zero, and that of a weight of zero is −∞ (the lower limit in fixed
     /// point).
     #[inline(always)]
     pub fn log_weights(&self) -> &[T] {
         self.weights.logs()
     }
 
-    /// A particle's weight; all sum up to one.
+    /// The normalised weight of a particle, so that all sum up to one; `None` beyond the last particle.
     #[inline]
     pub fn weight(&self, index: usize) -> Option<T> {
         (index < self.len()).then(|| self.weights.of(index) / self.weights.sum())
@@ -123,19 +123,19 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         self.weights.effective()
     }
 
-    /// Weighs each particle by the likelihood of a measurement: `log_likelihood` of its state.
+    /// Multiplies the weight of each particle by the likelihood of a measurement, given `log_likelihood` of its state.
     ///
     /// A likelihood that is not a number counts as zero.
     ///
     /// # Errors
-    /// [`Error::Degenerate`] if no particle explains the measurement; then nothing has changed.
+    /// [`Error::Degenerate`] if no particle explains the measurement; nothing has changed then.
     #[inline(always)]
     pub fn update(&mut self, log_likelihood: impl Fn([T; D]) -> T) -> Result<Update<T>, Error> {
         self.weights.update(&self.states, log_likelihood)
     }
 
-    /// [`Particles::update`] by a likelihood that is inlined: on the widest vectors of the processor where feature
-    /// `vectors` is on, with the same result on all.
+    /// [`Particles::update`] with a likelihood that is inlined: with feature `vectors` on the widest vectors of the
+    /// processor, with the same result on all.
     ///
     /// # Errors
     /// As [`Particles::update`].
@@ -147,7 +147,7 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
     /// Replaces the particles by their offspring, of equal weight.
     ///
     /// # Errors
-    /// None for any set of particles; nothing has changed then.
+    /// None for any cloud, as at least one weight is positive; nothing would have changed then.
     #[inline]
     pub fn resample<R: Rng + ?Sized>(
         &mut self,
@@ -157,10 +157,10 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         self.resample_to(self.len(), resampler, rng)
     }
 
-    /// Replaces the particles by `count` offspring of equal weight: see [`kld_count`](crate::kld_count).
+    /// Replaces the particles by `count` offspring of equal weight; see [`kld_count`](crate::kld_count).
     ///
     /// # Errors
-    /// [`Error::NotPositive`] for none, [`Error::TooMany`] for more than N. Nothing has changed then.
+    /// [`Error::NotPositive`] if `count` is zero, [`Error::TooMany`] if it is above N. Nothing has changed then.
     #[inline]
     pub fn resample_to<R: Rng + ?Sized>(
         &mut self,
@@ -180,12 +180,12 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         Ok(())
     }
 
-    /// Puts each particle's offspring into the places below `after` of those that have none.
+    /// Copies the additional offspring of each particle into places below `after` whose particles have no offspring.
     fn multiply(&mut self, before: usize, after: usize) {
         let (before, after) = (before.min(N), after.min(N));
         let mut free = 0;
         for index in 0..before {
-            // One stays where it is.
+            // One offspring stays in the particle's own place.
             let stays = u32::from(index < after);
             for _ in stays..self.scratch[index] {
                 while free < before && self.scratch[free] > 0 {
@@ -202,26 +202,26 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         }
     }
 
-    /// Weighted mean and spread.
+    /// Weighted mean and covariance of the states.
     #[inline]
     pub fn moments(&self) -> Moments<T, D> {
         Moments::of(&self.weights, &self.states)
     }
 
-    /// Weighted mean and spread of something that follows from the state, such as some of its coordinates.
+    /// Weighted mean and covariance of a function of the state, such as some of its coordinates.
     #[inline(always)]
     pub fn moments_of<const K: usize>(&self, of: impl Fn([T; D]) -> [T; K]) -> Moments<T, K> {
         Moments::of(&self.weights, &Mapped { points: &self.states, of })
     }
 
-    /// The mean alone of the same.
+    /// Weighted mean of a function of the state: [`Particles::moments_of`] without the covariance.
     #[inline(always)]
     pub fn mean_of<const K: usize>(&self, of: impl Fn([T; D]) -> [T; K]) -> [T; K] {
         let first = of(self.at(0));
         mean(&self.weights, &Mapped { points: &self.states, of }, first)
     }
 
-    /// The state of a particle; zeros where there is none.
+    /// The state of a particle; zeros beyond the last place.
     #[inline(always)]
     pub(crate) fn at(&self, index: usize) -> [T; D] {
         let mut state = [T::ZERO; D];
@@ -233,7 +233,7 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
         state
     }
 
-    /// Moves a particle, if there is one.
+    /// Sets the state of a particle; has no effect beyond the last place.
     #[inline(always)]
     pub(crate) fn put(&mut self, index: usize, state: &[T; D]) {
         for (axis, &coordinate) in self.states.iter_mut().zip(state) {
@@ -244,13 +244,13 @@ impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
     }
 }
 
-/// What resampling counts in is no state.
+/// Default of the buffer for resampling, which is not stored.
 #[cfg(feature = "serde")]
 fn no_scratch<const N: usize>() -> [u32; N] {
     [0; N]
 }
 
-/// Whether so many points can be kept.
+/// Checks that `count` points are at least one and at most `most`.
 pub(crate) fn check(count: usize, most: usize) -> Result<(), Error> {
     match count {
         0 => Err(Error::NotPositive),

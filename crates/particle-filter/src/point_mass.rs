@@ -9,10 +9,10 @@ use crate::{Error, Likelihood, Moments, Region, Update};
 
 /// A posterior on up to N fixed points: the golden lattice in a box of D dimensions.
 ///
-/// The most accurate filter of this crate for small static problems: its points are fixed, so that it needs no randomness, and
-/// the mean over a smooth posterior is right to many digits as soon as the lattice is finer than the
-/// posterior. When it no longer is, [`PointMass::finer`] lays another where the weight is; that takes the
-/// measurements once more. Points are computed, not stored: 4·N bytes in single precision.
+/// The most accurate filter of this crate for small static problems. Its points are fixed, so it needs no randomness,
+/// and the mean over a smooth posterior is correct to many digits as long as the lattice is finer than the posterior.
+/// When it no longer is, [`PointMass::finer`] lays another lattice where the weight is, to which the measurements must
+/// be applied once more. Points are computed, not stored: 4·N bytes in single precision.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -28,17 +28,17 @@ pub struct PointMass<T, const D: usize, const N: usize> {
 }
 
 impl<T: Scalar, const D: usize, const N: usize> PointMass<T, D, N> {
-    /// Equal weights all over a region.
+    /// Equal weights on a lattice of N points over a region.
     #[inline]
     pub fn new(region: &Region<T, D>) -> Self {
         const { assert!(0 < D && 0 < N && N <= 1 << 24, "points in a box") };
         Self { region: *region, weights: Weights::equal(N) }
     }
 
-    /// Equal weights on a lattice of `count` points.
+    /// Equal weights on a lattice of `count` points over a region.
     ///
     /// # Errors
-    /// [`Error::NotPositive`] for none, [`Error::TooMany`] for more than N.
+    /// [`Error::NotPositive`] if `count` is zero, [`Error::TooMany`] if it is above N.
     #[inline]
     pub fn with_count(count: usize, region: &Region<T, D>) -> Result<Self, Error> {
         check(count, N)?;
@@ -63,20 +63,20 @@ impl<T: Scalar, const D: usize, const N: usize> PointMass<T, D, N> {
         &self.region
     }
 
-    /// A point of the lattice.
+    /// The coordinates of a point of the lattice; `None` beyond the last one.
     #[inline]
     pub fn point(&self, index: usize) -> Option<[T; D]> {
         (index < self.len()).then(|| Lattice::new(&self.region, self.len()).at(index as u32))
     }
 
-    /// Logarithms of the weights; the largest is zero, that of a weight of zero −∞ (the lower rail in fixed
+    /// Logarithms of the weights; the largest is zero, and that of a weight of zero is −∞ (the lower limit in fixed
     /// point).
     #[inline]
     pub fn log_weights(&self) -> &[T] {
         self.weights.logs()
     }
 
-    /// The number of the point of the largest weight.
+    /// The index of the point of the largest weight.
     #[inline]
     pub fn heaviest(&self) -> usize {
         self.weights.heaviest()
@@ -88,17 +88,18 @@ impl<T: Scalar, const D: usize, const N: usize> PointMass<T, D, N> {
         self.weights.effective()
     }
 
-    /// Weighs each point by the likelihood of a measurement: `log_likelihood` of its place.
+    /// Multiplies the weight of each point by the likelihood of a measurement, given `log_likelihood` of its
+    /// coordinates.
     ///
     /// # Errors
-    /// [`Error::Degenerate`] if no point explains the measurement; then nothing has changed.
+    /// [`Error::Degenerate`] if no point explains the measurement; nothing has changed then.
     #[inline(always)]
     pub fn update(&mut self, log_likelihood: impl Fn([T; D]) -> T) -> Result<Update<T>, Error> {
         self.weights.update(&Lattice::new(&self.region, self.len()), log_likelihood)
     }
 
-    /// [`PointMass::update`] by a likelihood that is inlined: on the widest vectors of the processor where feature
-    /// `vectors` is on, with the same result on all.
+    /// [`PointMass::update`] with a likelihood that is inlined: with feature `vectors` on the widest vectors of the
+    /// processor, with the same result on all.
     ///
     /// # Errors
     /// As [`PointMass::update`].
@@ -107,19 +108,19 @@ impl<T: Scalar, const D: usize, const N: usize> PointMass<T, D, N> {
         self.weights.weigh(&Lattice::new(&self.region, self.len()), likelihood)
     }
 
-    /// A lattice over the box around all weights that are more than exp(−`depth`) of the largest, with a point's
-    /// room on each side; none if it would hardly be smaller than this one. Its weights are equal: it is to be
-    /// updated by all measurements so far.
+    /// A finer lattice over the bounding box of all weights above exp(−`depth`) of the largest, with the spacing of a
+    /// point added on each side; `None` if its volume would not be below nine tenths of this one's. Its weights are
+    /// equal, so all measurements so far must be applied to it.
     pub fn finer(&self, depth: T) -> Option<Self> {
         let region = self.heavy_region(depth)?;
         Some(Self { region, weights: Weights::equal(self.len()) })
     }
 
-    /// The box around what has weight, if it is worth while: smaller than nine tenths of the old one.
+    /// The bounding box of the relevant weights; `None` unless its volume is below nine tenths of the old one.
     fn heavy_region(&self, depth: T) -> Option<Region<T, D>> {
         let points = Lattice::new(&self.region, self.len());
         let (mut low, mut high) = bounds(&self.weights, &points, |log| log > -depth);
-        // As much room as a point has: N^(−1/D) of the side.
+        // The spacing of points as a share of the side: N^(−1/D).
         let share =
             (-T::from_binary(self.len() as i32, 0).ln() / T::from_binary(D as i32, 0)).exp();
         let (old, mut volume) = (self.region.width(), T::ONE);
@@ -133,16 +134,16 @@ impl<T: Scalar, const D: usize, const N: usize> PointMass<T, D, N> {
         Region::new(low, high).ok().filter(|_| smaller)
     }
 
-    /// Weighted mean and spread.
+    /// Weighted mean and covariance of the points.
     #[inline]
     pub fn moments(&self) -> Moments<T, D> {
         Moments::of(&self.weights, &Lattice::new(&self.region, self.len()))
     }
 
-    /// The logarithm, relative to the largest weight, of the density above which `mass` (0 to 1) of the
+    /// The logarithmic density, relative to the largest weight, above which `mass` (0 to 1) of the
     /// posterior lies: the border of its credible region.
     ///
-    /// By bisection to a thousandth: O(16·N).
+    /// Found by bisection to a thousandth: O(16·N).
     pub fn density_level(&self, mass: T) -> T {
         let wanted = self.weights.sum() * mass;
         let (mut above, mut below) = (T::ZERO, -T::from_f64(32.0));

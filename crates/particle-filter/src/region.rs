@@ -23,7 +23,7 @@ pub struct Region<T, const D: usize> {
     high: [T; D],
 }
 
-/// A region as it was stored, which may be none.
+/// A region as stored, whose bounds are yet to be checked.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(bound(deserialize = "T: Scalar + serde::Deserialize<'de>"))]
@@ -44,11 +44,11 @@ impl<T: Scalar, const D: usize> TryFrom<Bounds<T, D>> for Region<T, D> {
 }
 
 impl<T: Scalar, const D: usize> Region<T, D> {
-    /// The box between two corners, of which `low` has the smaller coordinates.
+    /// The box between two corners; `low` has the smaller coordinates.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] if a corner or a width is not; [`Error::NotPositive`] if the corners are the
-    /// wrong way round.
+    /// [`Error::NotFinite`] if a corner or a width is not finite; [`Error::NotPositive`] if a coordinate of `low` is
+    /// above that of `high`.
     #[inline]
     pub fn new(low: [T; D], high: [T; D]) -> Result<Self, Error> {
         for axis in 0..D {
@@ -63,7 +63,7 @@ impl<T: Scalar, const D: usize> Region<T, D> {
         Ok(Self { low, high })
     }
 
-    /// The same box with further coordinates, which are zero.
+    /// The same box with additional coordinates, in which both corners are zero.
     #[inline]
     pub fn extended<const K: usize>(&self) -> Region<T, K> {
         const { assert!(K >= D, "coordinates are added") };
@@ -75,13 +75,13 @@ impl<T: Scalar, const D: usize> Region<T, D> {
         region
     }
 
-    /// The corner of the smaller coordinates.
+    /// The corner with the smallest coordinates.
     #[inline(always)]
     pub fn low(&self) -> &[T; D] {
         &self.low
     }
 
-    /// The corner of the larger coordinates.
+    /// The corner with the largest coordinates.
     #[inline(always)]
     pub fn high(&self) -> &[T; D] {
         &self.high

@@ -5,14 +5,14 @@ use rand_core::Rng;
 use crate::Error;
 use crate::uniform::Uniform;
 
-/// A resampling scheme: the number of offspring of each particle. The expected number should be in proportion to its
-/// weight.
+/// A resampling scheme, which chooses the number of offspring of each particle.
 ///
-/// [`Resampler`] chooses among those of this crate at run time; each is a type of its own, too, and any other
-/// scheme can be given to [`Particles::resample`](crate::Particles::resample).
+/// The expected number of offspring should be proportional to the weight. [`Resampler`] chooses among the schemes of
+/// this crate at run time. Each of them is also a type of its own, and any other scheme can be passed to
+/// [`Particles::resample`](crate::Particles::resample).
 pub trait Resample {
-    /// Replaces each weight by its number of offspring. They should sum up to the number of draws: particles for
-    /// which offspring are missing stay where they are, offspring beyond the last are left out.
+    /// Replaces each weight by its number of offspring. They should sum up to the number of draws: where offspring are
+    /// missing, particles stay where they are; surplus offspring are left out.
     fn replace<R: Rng + ?Sized>(self, weights: IntegerWeights<'_>, rng: &mut R);
 }
 
@@ -22,12 +22,12 @@ pub trait Resample {
 pub struct IntegerWeights<'a> {
     weights: &'a mut [u32],
     draws: u32,
-    /// Before a law is chosen: once for all of them.
+    /// Computed before a scheme is chosen, once for all schemes.
     shares: Shares,
 }
 
 impl<'a> IntegerWeights<'a> {
-    /// Weights among which `draws` offspring are to be shared out.
+    /// Weights among which `draws` offspring are to be distributed.
     ///
     /// # Errors
     /// [`Error::Degenerate`] if all weights are zero, [`Error::TooMany`] if their sum times `draws` exceeds
@@ -44,45 +44,46 @@ impl<'a> IntegerWeights<'a> {
         Ok(Self { weights, draws, shares: Shares::new(total, draws) })
     }
 
-    /// The weights themselves, their sum, and the number of draws.
+    /// The weights, their sum, and the number of draws.
     #[inline(always)]
     pub fn into_parts(self) -> (&'a mut [u32], u64, u32) {
         (self.weights, self.shares.total, self.draws)
     }
 }
 
-/// N independent draws.
+/// Multinomial resampling: N independent draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Multinomial;
 
-/// ⌊N·w⌋ offspring each, and the rest by independent draws.
+/// Residual resampling: ⌊N·w⌋ offspring each, and the rest by independent draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Residual;
 
-/// One draw in each N-th of the sum: within two of N·w.
+/// Stratified resampling: an independent draw in each N-th of the cumulative weight. Counts are within two of N·w.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Stratified;
 
-/// One draw for all N-ths: within one of N·w. The thesis' choice, and the cheapest.
+/// Systematic resampling: one draw for all N-ths of the cumulative weight. Counts are within one of N·w. The thesis'
+/// choice, and the cheapest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Systematic;
 
-/// A choice among the schemes of this crate (the thesis' Tables 2.2 to 2.5) at run time.
+/// A choice among the resampling schemes of this crate (the thesis' Tables 2.2 to 2.5) at run time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Resampler {
-    /// See [`struct@Multinomial`].
+    /// Independent draws: see [`struct@Multinomial`].
     Multinomial,
-    /// See [`struct@Residual`].
+    /// Whole shares, and draws for the rest: see [`struct@Residual`].
     Residual,
-    /// See [`struct@Stratified`].
+    /// A draw in each stratum: see [`struct@Stratified`].
     Stratified,
-    /// See [`struct@Systematic`].
+    /// One draw for all strata: see [`struct@Systematic`].
     #[default]
     Systematic,
 }
@@ -113,7 +114,7 @@ impl Resample for Residual {
         let IntegerWeights { weights, draws, shares } = weights;
         let whole: u64 = weights.iter().map(|&weight| shares.of(weight.into()).0).sum();
         let rest = draws.saturating_sub(whole as u32);
-        // What is left over sums up to just so many shares.
+        // The remainders of all weights sum up to exactly `rest` shares.
         let mass = u64::from(rest) * shares.total;
         independently(weights, rest, mass, |weight| shares.of(weight.into()), rng);
     }
@@ -125,7 +126,7 @@ impl Resample for Stratified {
         let IntegerWeights { weights, shares, .. } = weights;
         let (mut last, mut offset) = (u64::MAX, 0);
         one_in_each(weights, &shares, |stratum| {
-            // Drawn anyway: a branch would be guessed wrongly every other time.
+            // Drawn unconditionally: a branch would be mispredicted every other time.
             let fresh = scaled(shares.total, rng.next_u32());
             offset = if stratum == last { offset } else { fresh };
             last = stratum;
@@ -143,7 +144,7 @@ impl Resample for Systematic {
     }
 }
 
-/// One draw in each of the strata of equal weight, `offset` of a stratum from its beginning.
+/// Makes one draw in each of the strata of equal weight, at `offset` from the beginning of the stratum.
 #[inline(always)]
 fn one_in_each(weights: &mut [u32], shares: &Shares, mut offset: impl FnMut(u64) -> u64) {
     let (mut cumulative, mut before) = (0, 0);
@@ -156,8 +157,8 @@ fn one_in_each(weights: &mut [u32], shares: &Shares, mut offset: impl FnMut(u64)
     }
 }
 
-/// `draws` independent ones from what `split` leaves of each weight, and what it takes for certain. `mass`
-/// is the sum of what it leaves.
+/// Distributes `draws` independent draws. `split` divides each weight into a certain number of offspring and a
+/// remainder to draw from; `mass` is the sum of the remainders.
 #[inline(always)]
 fn independently<R: Rng + ?Sized>(
     weights: &mut [u32],
@@ -176,7 +177,7 @@ fn independently<R: Rng + ?Sized>(
     }
 }
 
-/// Cumulated weights as 32-bit numbers.
+/// Conversion of cumulative weights to 32-bit numbers.
 struct Places {
     mass: u64,
     zeros: u32,
@@ -191,7 +192,7 @@ impl Places {
         Self { mass, zeros, reciprocal: (1 << 63) / upper }
     }
 
-    /// 2³² · cumulative / mass, within two of it; of the whole mass, more than any number.
+    /// 2³² · cumulative / mass, with an error of up to two; for the whole mass, a number above any draw.
     #[inline(always)]
     fn of(&self, cumulative: u64) -> u32 {
         let place = (((cumulative << self.zeros) >> 32) * self.reciprocal) >> 31;
@@ -206,13 +207,13 @@ fn scaled(value: u64, fraction: u32) -> u64 {
     (value >> 32) * fraction + (((value & 0xFFFF_FFFF) * fraction) >> 32)
 }
 
-/// Division of cumulated weights by one share, total/draws: a multiplication, since the divisor stays.
+/// Division of cumulative weights by one share, total/draws: a multiplication, as the divisor stays the same.
 #[derive(Debug)]
 struct Shares {
     total: u64,
     draws: u64,
     zeros: u32,
-    /// draws · 2⁴³ / (the uppermost 32 bits of the total, rounded up).
+    /// draws · 2⁴³ / (the upper 32 bits of the total, rounded up).
     reciprocal: u64,
 }
 
@@ -225,10 +226,10 @@ impl Shares {
         Self { total, draws, zeros, reciprocal: (draws << 43) / upper }
     }
 
-    /// Number of whole shares in a weight, and draws times what remains.
+    /// The number of whole shares in a weight, and draws times the remainder.
     #[inline(always)]
     fn of(&self, weight: u64) -> (u64, u64) {
-        // Right, or one too small: with up to 2²⁰ draws the error is below 2⁻¹⁰.
+        // Exact or one too small: with up to 2²⁰ draws the error is below 2⁻¹⁰.
         let estimate = (((weight << self.zeros) >> 32) * self.reciprocal) >> 43;
         let rest = (weight * self.draws).wrapping_sub(estimate * self.total);
         let short = rest >= self.total;

@@ -1,4 +1,4 @@
-//! All kinds of vectors give the same bits: `cargo test -p kestirim-particle-filter --features vectors`.
+//! All vector widths give the same bits: `cargo test -p kestirim-particle-filter --features vectors`.
 
 extern crate std;
 
@@ -14,7 +14,7 @@ use crate::{Likelihood, Particles, Region, Start, Xoshiro128PlusPlus};
 
 const N: usize = 500;
 
-/// Distance, exponentials, roots, logarithms and an angle, as in a path loss.
+/// A likelihood with a distance, exponentials, roots, logarithms and an angle, as in a path loss.
 struct Ring<T>(T);
 
 impl<T: Scalar> Likelihood<T, 2> for Ring<T> {
@@ -35,7 +35,7 @@ fn check<T: Scalar>() -> usize {
         let cloud = Particles::<T, 2, N>::with_count(count, Start::Random, &region, &mut rng);
         let cloud = cloud.expect("a cloud");
         let ring = Ring(T::from_f64(1.5));
-        // A kernel that changes weights is run on weights of its own.
+        // The kernel changes the weights, so each run gets a copy.
         let weighed = Vectors::all().map(|unit| {
             let mut weights = cloud.weights.clone();
             let kernel =

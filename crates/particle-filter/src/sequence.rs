@@ -10,17 +10,17 @@ use crate::random::uniform;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Start {
-    /// Independently and uniformly.
+    /// Independent uniform random points.
     Random,
-    /// By Roberts' sequence `R_D`, whose first points are as even as all of them: multiples of powers of the
-    /// generalised golden ratio.
+    /// Roberts' sequence `R_D`, multiples of powers of the generalised golden ratio, whose first points fill the box as
+    /// evenly as all of them do.
     QuasiRandom,
-    /// On a lattice of just so many points: the first coordinate in equal steps, the others by R_(D − 1). In
-    /// the plane that is the golden lattice.
+    /// A lattice of exactly as many points as particles: the first coordinate in equal steps, the others by R_(D − 1).
+    /// In the plane it is the golden lattice.
     Lattice,
 }
 
-/// 2³²·φ⁻ᵏ for k = 1 to D, φ the positive root of x^(D + 1) = x + 1 (M. Roberts, "The unreasonable
+/// 2³²·φ⁻ᵏ for k = 1 to D, where φ is the positive root of x^(D + 1) = x + 1 (M. Roberts, "The unreasonable
 /// effectiveness of quasirandom sequences", 2018).
 const fn steps<const D: usize>(dimensions: usize) -> [u32; D] {
     let mut root = 2.0_f64;
@@ -48,7 +48,7 @@ const fn steps<const D: usize>(dimensions: usize) -> [u32; D] {
     steps
 }
 
-/// Carries the tables, which are computed by the compiler.
+/// Holder of the tables, which are computed at compile time.
 struct Tables<const D: usize>;
 
 impl<const D: usize> Tables<D> {
@@ -56,7 +56,7 @@ impl<const D: usize> Tables<D> {
     const ALL_BUT_ONE: [u32; D] = steps(D - 1);
 }
 
-/// The first coordinates of a lattice: equal steps, of which the first begins half a step from the border.
+/// First coordinates of a lattice: equal steps, the first of which begins half a step from the border.
 #[derive(Clone, Copy)]
 pub(crate) struct Steps {
     step: u32,
@@ -67,12 +67,12 @@ impl Steps {
     #[inline]
     pub(crate) fn of(count: usize) -> Self {
         let step = (1_u64 << 32) / (count as u64).clamp(1, 1 << 31);
-        // One point alone has all of 2³², which is zero, and never takes a step.
+        // For a single point the step of 2³² wraps to zero, but no step is taken.
         Self { step: step as u32, half: (step / 2) as u32 }
     }
 }
 
-/// The point number `index` of a lattice in the unit cube, 2³² to a side.
+/// The point at position `index` of a lattice in the unit cube, whose side is 2³².
 #[inline(always)]
 pub(crate) fn lattice_point<const D: usize>(index: u32, steps: Steps) -> [u32; D] {
     let mut point = [0; D];
@@ -87,7 +87,7 @@ pub(crate) fn lattice_point<const D: usize>(index: u32, steps: Steps) -> [u32; D
 }
 
 impl Start {
-    /// A point in the unit cube, 2³² to a side.
+    /// The point at position `index` in the unit cube, whose side is 2³².
     #[inline]
     pub(crate) fn point<const D: usize, R: Rng + ?Sized>(
         self,
@@ -105,7 +105,7 @@ impl Start {
     }
 }
 
-/// From the unit cube into a box.
+/// Maps a point of the unit cube into a box.
 #[inline(always)]
 pub(crate) fn placed<T: Scalar, const D: usize>(
     point: [u32; D],

@@ -5,21 +5,22 @@ use crate::blocks::{BLOCK, Block, Points, gather};
 use crate::likelihood::Closure;
 use crate::{Error, Likelihood};
 
-/// Lanes of a sum, which make vector instructions of it and the same rounding everywhere.
+/// Number of partial sums, for vector instructions and the same rounding on every machine.
 const LANES: usize = 4;
 
-/// Result of an update.
+/// Result of an update by a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Update<T> {
-    /// Effective number of particles (Σw)²/Σw²: from one to all.
+    /// Effective number of particles (Σw)²/Σw², from one to all.
     pub effective: T,
-    /// Logarithm of the density of what was measured, given all that was measured before.
+    /// Logarithm of the density of the measurement, given all earlier measurements.
     pub log_evidence: T,
 }
 
-/// Logarithms of weights, the largest of them zero; of those that are zero, −∞ or the lower rail.
+/// Logarithms of the weights, the largest of them zero; that of a weight of zero is −∞ or the lower limit of fixed
+/// point.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -39,7 +40,7 @@ pub(crate) struct Weights<T, const N: usize> {
     square_sum: T,
 }
 
-/// A count of points that are in use: at least one, and no more than there are.
+/// Deserialises the number of points in use: at least one, at most N.
 #[cfg(feature = "serde")]
 fn used<'de, D: serde::Deserializer<'de>, const N: usize>(
     deserializer: D,
@@ -48,7 +49,7 @@ fn used<'de, D: serde::Deserializer<'de>, const N: usize>(
     if count > 0 { Ok(count) } else { Err(serde::de::Error::custom("no points")) }
 }
 
-/// ln 0.
+/// ln 0, the logarithm of a weight of zero.
 #[inline(always)]
 pub(crate) fn never<T: Scalar>() -> T {
     T::ZERO.ln()
@@ -75,11 +76,11 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
 
     #[inline(always)]
     pub(crate) fn count(&self) -> usize {
-        // The compiler cannot know that it never exceeds N, and would check every index.
+        // The compiler cannot know that the count never exceeds N, and would check every index.
         self.count.min(N)
     }
 
-    /// The logarithms from number `base` on, up to a block; none beyond the last.
+    /// The logarithms of the block from index `base` on; `None` beyond the last.
     #[inline(always)]
     pub(crate) fn block(&self, base: usize) -> Option<&[T]> {
         let end = base.saturating_add(BLOCK).min(self.count);
@@ -91,14 +92,14 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
         self.log.get(..self.count).unwrap_or(&self.log)
     }
 
-    /// The number of the largest weight.
+    /// The index of the largest weight.
     #[inline]
     pub(crate) fn heaviest(&self) -> usize {
-        // It is zero, exactly.
+        // The largest logarithm is exactly zero.
         self.logs().iter().position(|log| *log == T::ZERO).unwrap_or(0)
     }
 
-    /// A weight; the largest is one.
+    /// The weight at `index`, relative to the largest.
     #[inline(always)]
     pub(crate) fn of(&self, index: usize) -> T {
         self.log[index].exp()
@@ -115,10 +116,10 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
         self.sum * (self.sum / self.square_sum)
     }
 
-    /// Multiplies each weight by a likelihood; one that is zero, infinite or NaN makes it zero.
+    /// Multiplies each weight by a likelihood; a likelihood that is zero, infinite or NaN makes the weight zero.
     ///
     /// # Errors
-    /// [`Error::Degenerate`] if no weight is left; then none has changed.
+    /// [`Error::Degenerate`] if all weights would be zero; none has changed then.
     #[inline(always)]
     pub(crate) fn update<const D: usize>(
         &mut self,
@@ -128,7 +129,7 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
         self.multiply(points, &Closure(log_likelihood))
     }
 
-    /// The same on the widest vectors of the processor.
+    /// [`Weights::update`] on the widest vectors of the processor.
     ///
     /// # Errors
     /// As [`Weights::update`].
@@ -160,7 +161,7 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
             }
             let peak = largest_of(fresh);
             if peak > never && largest == never {
-                // The first that is worth something: now those before it may be written off.
+                // First block with a positive weight: only now may the weights before it be set to zero.
                 self.log.iter_mut().take(base).for_each(|log| *log = never);
             }
             largest = if peak > largest { peak } else { largest };
@@ -180,7 +181,7 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
         Ok(Update { effective: self.effective(), log_evidence })
     }
 
-    /// Σ aᵢ·bᵢ of R × C pairs of factors, which `factors` has for each weight (the largest is one) and its point.
+    /// Sums Σ aᵢ·bᵢ of R × C pairs, where `factors` gives the pairs of each weight (the largest is one) and its point.
     #[inline(always)]
     pub(crate) fn sums<const D: usize, const R: usize, const C: usize>(
         &self,
@@ -196,7 +197,7 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
             for (weight, &log) in weight.iter_mut().zip(logs) {
                 *weight = log.exp();
             }
-            // What is not used of the last block has no weight.
+            // Unused places of the last block have no weight.
             weight.iter_mut().skip(logs.len()).for_each(|weight| *weight = T::ZERO);
             let mut first = 0;
             while first < logs.len() && first <= BLOCK - LANES {
@@ -218,13 +219,13 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
         })
     }
 
-    /// Subtracts the largest logarithm from all.
+    /// Subtracts the largest logarithm from all, and sums up the weights.
     #[inline(always)]
     fn normalise(&mut self, largest: T) {
         let never = never::<T>();
         for log in self.log.iter_mut().take(self.count) {
             let value = *log - largest;
-            // On the lower rail of fixed point the difference would no longer be on it.
+            // At the lower limit of fixed point, the difference would move away from it.
             *log = if *log > never { value } else { never };
         }
         let [[sum, square_sum]] =
@@ -234,7 +235,7 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
     }
 }
 
-/// An update on the widest vectors.
+/// An update by a measurement, as a kernel for vectors.
 pub(crate) struct Weighing<'a, T, P, L, const D: usize, const N: usize> {
     pub(crate) weights: &'a mut Weights<T, N>,
     pub(crate) points: &'a P,
@@ -255,7 +256,7 @@ where
     }
 }
 
-/// Points of no dimension: for sums over weights alone.
+/// Points without coordinates, for sums over weights alone.
 struct Nowhere;
 
 impl<T> Points<T, 0> for Nowhere {
@@ -265,7 +266,7 @@ impl<T> Points<T, 0> for Nowhere {
     }
 }
 
-/// The largest of a block, in lanes.
+/// The largest value of a block, by halving it lane by lane.
 #[inline(always)]
 fn largest_of<T: Scalar>(mut values: [T; BLOCK]) -> T {
     let mut half = BLOCK / 2;

@@ -6,23 +6,23 @@ use nalgebra::SVector;
 /// Standard gravity (m/s²).
 pub(crate) const STANDARD_GRAVITY: f64 = 9.80665;
 
-/// Gyro bias and what of an accelerometer bias can be seen, learnt from standstill.
+/// The gyro bias and the observable part of an accelerometer bias, learnt at standstill.
 ///
-/// The stream is cut into eighths of a second. Four in a row whose mean rates and forces agree are a
-/// standstill of half a second; a stance of walking is over sooner. What it says is weighted by
-/// its own spread against what the class of the sensor promises: people sway, and a good gyroscope knows
-/// its zero better than a swaying foot shows it, whereas a bare chip's may be off by a hundred times that.
+/// The stream is cut into eighths of a second. Four in a row whose mean rates and forces agree are a standstill of half
+/// a second; a stance in walking is shorter. It is weighted by its own spread against what the class of the sensor
+/// promises: people sway, and a good gyroscope knows its zero better than a swaying foot shows it, whereas that of a
+/// bare chip may be off by a hundred times as much.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Alignment<T: Scalar> {
     gyro_bias: SVector<T, 3>,
-    /// Variance of the bias of each axis, (0.01 rad/s)²: one number, since sway turns about every axis. (In this unit Q12.20
-    /// holds the squares of both the largest bias and the smallest noise.)
+    /// The variance of the bias of each axis, (0.01 rad/s)²: one number, since sway turns about every axis. (In this
+    /// unit Q12.20 holds the squares of both the largest bias and the smallest noise.)
     bias_variance: T,
     /// The accelerometer's magnitude at rest, in units of standard gravity.
     gravity: T,
     gravity_variance: T,
-    /// m/s², body.
+    /// The accelerometer bias (m/s², body).
     accelerometer_bias: SVector<T, 3>,
     block: Block<T>,
     standstill: Standstill<T>,
@@ -34,9 +34,9 @@ pub struct Alignment<T: Scalar> {
 struct Block<T: Scalar> {
     begun_us: Option<u32>,
     count: i32,
-    /// rad/s.
+    /// The sum of the rates (rad/s).
     rate: SVector<T, 3>,
-    /// m/s².
+    /// The sum of the forces (m/s²).
     force: SVector<T, 3>,
 }
 
@@ -47,9 +47,9 @@ struct Standstill<T: Scalar> {
     blocks: i32,
     rate: SVector<T, 3>,
     force: SVector<T, 3>,
-    /// 0.01 rad/s.
+    /// The sum of the rate deviations (0.01 rad/s).
     rate_sum: SVector<T, 3>,
-    /// (0.01 rad/s)².
+    /// The sum of the squared rate deviations, (0.01 rad/s)².
     rate_square: T,
     force_sum: SVector<T, 3>,
 }
@@ -76,24 +76,24 @@ impl<T: Scalar> Standstill<T> {
 impl<T: Scalar> Alignment<T> {
     const BLOCK_US: u32 = 125_000;
     const BLOCKS: i32 = 4;
-    /// Blocks further apart than this are no standstill (rad/s) …
+    /// The largest difference of rates between the blocks of a standstill (rad/s).
     const RATE_SPREAD: f64 = 0.03;
-    /// … nor is a rate that no bias explains (rad/s), however steady …
+    /// The largest rate that a bias explains (rad/s): a larger one is no standstill, however steady.
     const LARGEST_BIAS: f64 = 0.35;
-    /// … nor forces further apart than this (g).
+    /// The largest difference of forces between the blocks of a standstill (g).
     const FORCE_SPREAD: f64 = 0.04;
-    /// The gyroscope's own noise over a standstill (0.01 rad/s), below which no spread is believed.
+    /// The gyroscope's own noise over a standstill (0.01 rad/s): the lower limit of the spread.
     const RATE_FLOOR: f64 = 0.07;
-    /// So far from gravity (g) no accelerometer is at rest: nothing is learnt there.
+    /// The largest deviation from gravity (g) of an accelerometer at rest: nothing is learnt beyond it.
     const NO_GRAVITY: f64 = 0.5;
-    /// The accelerometer's, relative to g.
+    /// The accelerometer's own noise over a standstill, relative to g.
     const FORCE_FLOOR: f64 = 0.001;
-    /// A bias with more than this standard deviation is not known (0.01 rad/s).
+    /// A bias with a larger standard deviation than this is unknown (0.01 rad/s).
     const UNKNOWN: f64 = 1.0;
-    /// Standard deviation by which a bias wanders between two standstills (0.01 rad/s).
+    /// The standard deviation of a bias's random walk between two standstills (0.01 rad/s).
     const WANDER: f64 = 0.01;
 
-    /// The state before the first sample, from the class of the sensor.
+    /// The prior state for the class of the sensor.
     pub(crate) fn new(sensor: SensorClass) -> Self {
         let Prior { gyro_bias, gravity } = sensor.prior();
         Self {
@@ -112,27 +112,28 @@ impl<T: Scalar> Alignment<T> {
         &self.gyro_bias
     }
 
-    /// The smallest accelerometer bias that explains what it shows at rest (m/s², body): along gravity. Across
-    /// it, a bias cannot be told from a tilt.
+    /// The smallest accelerometer bias that explains the reading at rest (m/s², body): it lies along gravity. Across
+    /// gravity a bias cannot be distinguished from a tilt.
     pub fn accelerometer_bias(&self) -> &SVector<T, 3> {
         &self.accelerometer_bias
     }
 
-    /// Relative error of gravity at rest, with its standard deviation: that of the class, if it was never seen.
+    /// The relative error of gravity at rest combined with its standard deviation, which is that of the class if
+    /// gravity was never seen.
     pub(crate) fn gravity_off(&self) -> T {
         (self.gravity - T::ONE).hypot(self.gravity_variance.sqrt())
     }
 
-    /// Keeps what was learnt and forgets the stream, to begin it again.
+    /// Keeps what was learnt and forgets the stream, to restart it.
     pub(crate) fn rewound(mut self) -> Self {
         self.block = Block::new();
         self.standstill.blocks = 0;
         self
     }
 
-    /// Takes the next sample; `Some(|f|/g₀)` when a standstill has just refined the estimates.
+    /// Processes the next sample; returns `Some(|f|/g₀)` when a standstill has just refined the estimates.
     pub(crate) fn update(&mut self, sample: &ImuSample<T>) -> Option<T> {
-        // The lower half is enough for differences.
+        // The lower 32 bits are enough for differences.
         let time_us = sample.time_us as u32;
         let begun_us = *self.block.begun_us.get_or_insert(time_us);
         self.block.rate += sample.angular_rate;
@@ -171,7 +172,7 @@ impl<T: Scalar> Alignment<T> {
         Some(magnitude)
     }
 
-    /// One scalar update of the bias and one of gravity from a whole standstill.
+    /// Updates bias and gravity by one scalar update each from a whole standstill; returns |f|/g₀.
     fn learn(&mut self) -> T {
         let run = &self.standstill;
         let share = T::from_f64(0.25);
@@ -182,13 +183,13 @@ impl<T: Scalar> Alignment<T> {
         let force = run.force + run.force_sum * share;
         let [x, y, z] = *force.as_array();
         let magnitude = x.hypot(y).hypot(z);
-        // A bus that stalls delivers zeros, which stand still, too.
+        // A stalled bus delivers zeros, which look like a standstill, too.
         if (magnitude - T::ONE).abs() > T::from_f64(Self::NO_GRAVITY) {
             return magnitude;
         }
 
         self.bias_variance += T::from_f64(Self::WANDER * Self::WANDER);
-        // Who knows the zero well weighs a sway rightly; to who knows nothing of it, it would be the zero.
+        // With a well-known zero a sway is weighted correctly; with an unknown one it would become the zero.
         let knows = self.bias_variance < T::from_f64(Self::UNKNOWN * Self::UNKNOWN);
         if knows || !sways(&rate, spread) {
             let floor = T::from_f64(Self::RATE_FLOOR * Self::RATE_FLOOR);
@@ -207,8 +208,8 @@ impl<T: Scalar> Alignment<T> {
     }
 }
 
-/// Whether a standstill's mean rate (rad/s) may be a person's sway as well as a bias: it spreads, (0.01 rad/s)² an axis,
-/// and by a good part of itself.
+/// Whether a standstill's mean rate (rad/s) may be a person's sway as well as a bias: its `spread`, (0.01 rad/s)² per
+/// axis, is large, also relative to the rate itself.
 fn sways<T: Scalar>(rate: &SVector<T, 3>, spread: T) -> bool {
     let rate = rate * T::from_f64(100.0);
     let square = T::dot(rate.as_array(), rate.as_array());

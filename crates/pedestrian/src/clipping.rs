@@ -3,37 +3,37 @@ use kestirim_attitude::Orientation;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// What an axis of a gyroscope did not see, because the body turned faster about it than it can measure.
+/// The rotation that an axis of a gyroscope missed, because the body turned faster about it than the axis can measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MissedTurn<T: Scalar> {
-    /// The most likely rotation, a vector in body axes as they stand now (rad).
+    /// The most likely rotation vector, in the current body axes (rad).
     pub turn: SVector<T, 3>,
-    /// What the specific force has changed the velocity by since (m/s, earth, gravity not taken off).
+    /// The velocity change by the specific force since then (m/s, earth, gravity not subtracted).
     pub pushed: SVector<T, 3>,
 }
 
 /// A step as it was integrated.
 pub(crate) struct Turned<'a, T: Scalar> {
-    /// As it was measured (rad/s).
+    /// The measured rate (rad/s).
     pub(crate) rate: &'a SVector<T, 3>,
-    /// s.
+    /// The interval (s).
     pub(crate) interval: T,
-    /// What the specific force changed the velocity by (m/s, earth).
+    /// The velocity change by the specific force (m/s, earth).
     pub(crate) pushed: SVector<T, 3>,
 }
 
-/// Finds the ends of a gyroscope's range in the stream, and what was beyond them.
+/// Finds the ends of a gyroscope's range in the stream, and the rotation beyond them.
 ///
-/// A calibrated unit that clips does not repeat a value: bias, scale and the other axes move its plateau by some per
-/// mille, and each axis has two ends of its own. What tells a plateau from the top of a swing is its corners: going on
-/// with the slopes by which it is entered and left, the curve would have risen far above it.
+/// A calibrated unit that clips does not repeat a value: bias, scale and the other axes shift its plateau by some per
+/// mille, and each axis has two ends of its own. A plateau differs from the top of a swing by its corners: continued
+/// with the slopes at its beginning and end, the curve would have risen far above it.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Clipping<T: Scalar> {
     axes: [Axis<T>; 3],
-    /// The rates before the newest (rad/s).
+    /// The two rates before the newest (rad/s).
     before: [SVector<T, 3>; 2],
-    /// A plateau has begun and not been judged yet.
+    /// Whether a plateau has begun that has not been judged yet.
     is_open: bool,
 }
 
@@ -50,9 +50,9 @@ struct Axis<T: Scalar> {
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct End<T> {
-    /// The largest rate that two samples in a row have reached (rad/s).
+    /// The largest rate that two consecutive samples have reached (rad/s).
     level: T,
-    /// That this level is one.
+    /// The evidence that this level is an end of the range.
     evidence: u8,
 }
 
@@ -60,19 +60,19 @@ struct End<T> {
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Run<T: Scalar> {
-    /// Samples; zero between two stretches.
+    /// The number of samples; zero between two stretches.
     count: u8,
-    /// At the negative end.
+    /// Whether the stretch is at the negative end.
     is_negative: bool,
-    /// How long (s).
+    /// The duration of the stretch (s).
     duration: T,
-    /// By how much the rate grew from sample to sample before it (rad/s).
+    /// The increase of the rate from sample to sample before the stretch (rad/s).
     rising: T,
-    /// How the body has turned since its middle, as far as that was measured (rad).
+    /// The measured rotation of the body since the middle of the stretch (rad).
     turned: SVector<T, 3>,
-    /// What the specific force has changed the velocity by since then (m/s, earth).
+    /// The velocity change by the specific force since the middle of the stretch (m/s, earth).
     pushed: SVector<T, 3>,
-    /// The stretch is over: with the next sample it is known how the rate falls.
+    /// Whether the stretch is over: the next sample shows how the rate falls.
     is_over: bool,
 }
 
@@ -83,7 +83,7 @@ impl<T: Scalar> Run<T> {
         Self { count, is_negative, duration: zero, rising: zero, turned, pushed, is_over }
     }
 
-    /// Moves on by a step, of which this share comes after the middle.
+    /// Advances by a step, of which `share` follows the middle.
     fn move_on(&mut self, step: &Turned<'_, T>, share: T) {
         self.turned += step.rate * (step.interval * share);
         self.pushed += step.pushed * share;
@@ -91,26 +91,27 @@ impl<T: Scalar> Run<T> {
 }
 
 impl<T: Scalar> End<T> {
-    /// Share of the largest rate from which on a sample may be clipped.
+    /// The share of the largest rate from which on a sample may be clipped.
     const NEAR: f64 = 0.98;
-    /// A level that grows by more was none.
+    /// A level that grows by more than this factor was no end of the range.
     const GROWTH: f64 = 1.02;
-    /// A plateau that goes on as it is entered and left would rise by more than this share of its level, where the top of
-    /// a parabola rises by 0.02 and a flatter one by 0.04.
+    /// A plateau is clipped if, continued with the slopes at its ends, it would rise by more than this share of its
+    /// level; the top of a parabola rises by 0.02 and a flatter one by 0.04.
     const CORNERS: f64 = 0.05;
-    /// One that rises by more than this has sharp corners: it weighs twice …
+    /// A plateau that would rise by more than this share has sharp corners: it weighs twice, if it is brief and
+    /// resolved.
     const SHARP: f64 = 0.1;
-    /// … if it is brief (s), for a foot may turn evenly for a while, …
+    /// The longest brief plateau (s), for a foot may turn evenly for a while.
     const BRIEF: f64 = 0.06;
-    /// … and if samples come more often (s): else an impact looks the same.
+    /// The longest sampling interval that resolves corners (s): with a longer one an impact looks the same.
     const RESOLVED: f64 = 0.0075;
-    /// Evidence at the same level that is no chance: strides differ.
+    /// The evidence at the same level that excludes chance, as strides differ.
     const ENOUGH: u8 = 4;
-    /// A swing falls at most so many times as steeply as it rises, and the other way round: what is steeper is an impact.
+    /// The largest ratio between the slopes of a swing's rise and fall: what is steeper is an impact.
     const STEEPER: f64 = 2.0;
-    /// A foot's swing bends within this time (s): a longer plateau would be no higher.
+    /// The time within which a foot's swing bends (s): a longer plateau would rise no higher.
     const BEND: f64 = 0.08;
-    /// No foot turns so fast for so long (s): the sensor is stuck.
+    /// The longest plateau (s): no foot turns so fast for longer, so the sensor is stuck.
     const LONGEST: f64 = 0.3;
 
     fn new() -> Self {
@@ -121,7 +122,7 @@ impl<T: Scalar> End<T> {
         self.evidence >= Self::ENOUGH
     }
 
-    /// Keeps an end that is known: the same plateaus come once more.
+    /// Keeps a known end, and discards other evidence: the same plateaus will recur.
     fn rewound(self) -> Self {
         Self { evidence: if self.is_clipped() { self.evidence } else { 0 }, ..self }
     }
@@ -130,7 +131,8 @@ impl<T: Scalar> End<T> {
         rate >= self.level * T::from_f64(Self::NEAR)
     }
 
-    /// Two samples in a row have reached this rate. Whether the level was none.
+    /// Processes a rate that two consecutive samples have reached; returns whether the previous level was no end of the
+    /// range.
     fn rise(&mut self, sustained: T) -> bool {
         let was_none = sustained > self.level * T::from_f64(Self::GROWTH);
         if was_none {
@@ -140,7 +142,7 @@ impl<T: Scalar> End<T> {
         was_none
     }
 
-    /// What a stretch weighs that would have risen by eight times so much (rad/s), had it gone on.
+    /// The weight of a stretch that would have risen by an eighth of `rise` (rad/s), had it continued.
     fn weight(&self, run: &Run<T>, rise: T) -> u8 {
         let corners = rise * T::from_f64(1.0 / 8.0);
         let interval = run.duration / T::from_micro(i32::from(run.count.max(1)) * 1_000_000);
@@ -153,14 +155,14 @@ impl<T: Scalar> End<T> {
         }
     }
 
-    /// Judges a stretch that is over, after which the rate fell by so much from sample to sample; the angle missed in it
-    /// (rad).
+    /// Judges a finished stretch, after which the rate fell by `falling` from sample to sample; returns the angle
+    /// missed in it (rad).
     fn judge(&mut self, run: &Run<T>, falling: T) -> Option<T> {
         if run.duration > T::from_f64(Self::LONGEST) {
             return None;
         }
-        // The cubic that begins and ends with these slopes rises by an eighth of their sum times the duration, and
-        // encloses a twelfth of the same times the duration.
+        // The cubic with these slopes at its ends rises by an eighth of their sum times the duration, and encloses a
+        // twelfth of that sum times the duration squared.
         let steeper = T::from_f64(Self::STEEPER);
         let slopes = run.rising.min(falling * steeper) + falling.min(run.rising * steeper);
         let rise = slopes * T::from_micro(i32::from(run.count) * 1_000_000);
@@ -175,7 +177,7 @@ impl<T: Scalar> Axis<T> {
         Self { positive: End::new(), negative: End::new(), run: Run::none() }
     }
 
-    /// Takes the newest rate and the two before it; a stretch that is over, and the angle missed in it (rad).
+    /// Processes the newest rate and the two before it; returns a finished stretch and the angle missed in it (rad).
     fn update(&mut self, rate: T, before: [T; 2], step: &Turned<'_, T>) -> Option<(Run<T>, T)> {
         let is_negative = if self.run.count > 0 { self.run.is_negative } else { rate < T::ZERO };
         let (end, sign) =
@@ -211,7 +213,7 @@ impl<T: Scalar> Clipping<T> {
         Self { axes: [Axis::new(); 3], before: [SVector::zeros(); 2], is_open: false }
     }
 
-    /// Keeps the ends of the range and forgets the stream, to begin it again.
+    /// Keeps the ends of the range and forgets the stream, to restart it.
     pub(crate) fn rewound(mut self) -> Self {
         self.before = [SVector::zeros(); 2];
         self.forget();
@@ -222,12 +224,12 @@ impl<T: Scalar> Clipping<T> {
         self
     }
 
-    /// The rate that was remembered last (rad/s).
+    /// The last remembered rate (rad/s).
     pub(crate) fn last(&self) -> SVector<T, 3> {
         self.before[0]
     }
 
-    /// Samples are missing: what was begun is not known.
+    /// Forgets unfinished stretches, after missing samples.
     pub(crate) fn forget(&mut self) {
         for axis in &mut self.axes {
             axis.run = Run::none();
@@ -235,7 +237,7 @@ impl<T: Scalar> Clipping<T> {
         self.is_open = false;
     }
 
-    /// Whether a step at this rate, `large` or not, has to be shown: all others change nothing.
+    /// Whether a step at this rate, `large` or not, must be passed to [`Self::show`]: all others change nothing.
     #[inline]
     pub(crate) fn concerns(&self, rate: &SVector<T, 3>, large: bool) -> bool {
         self.is_open || large && self.is_near(rate)
@@ -251,23 +253,23 @@ impl<T: Scalar> Clipping<T> {
         })
     }
 
-    /// Keeps a rate (rad/s), shown or not.
+    /// Remembers a rate (rad/s), whether shown or not.
     #[inline]
     pub(crate) fn remember(&mut self, rate: &SVector<T, 3>) {
         self.before = [*rate, self.before[0]];
     }
 
-    /// Takes a step and tells `miss` what was missed in a stretch that is now over.
+    /// Processes a step and passes to `miss` what was missed in a stretch that is now over.
     pub(crate) fn show(&mut self, step: &Turned<'_, T>, mut miss: impl FnMut(&MissedTurn<T>)) {
         let [before, earlier] = [*self.before[0].as_array(), *self.before[1].as_array()];
         self.is_open = false;
         for (index, axis) in self.axes.iter_mut().enumerate() {
             let (rate, before) = (step.rate.as_array()[index], [before[index], earlier[index]]);
             if let Some((run, angle)) = axis.update(rate, before, step) {
-                // It was missed about the axis as that stood in the middle of the stretch.
+                // The rotation was missed about the axis as it was in the middle of the stretch.
                 let mut about = SVector::<T, 3>::zeros();
                 about.as_array_mut()[index] = angle;
-                // From the identity the same as in the body, and linked already.
+                // From the identity it is the same as in the body, and linked already.
                 let since = Orientation::identity().turned_in_earth(&run.turned);
                 miss(&MissedTurn { turn: since.to_body(&about), pushed: run.pushed });
             }

@@ -1,14 +1,14 @@
 use crate::Error;
 use kestirim_scalar::Scalar;
 
-/// Meaning of the time stamp of a new sample.
+/// The meaning of a new sample's time stamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Tick<T> {
     /// The first sample: nothing to integrate yet.
     First,
-    /// The same time again, as the recorder wrote a row twice; or the same rates, as the sensor was not read anew.
+    /// The same time again, as the recorder wrote a row twice; or the same rates, as the sensor was not read again.
     Duplicate,
-    /// The step that is integrated, and for how long samples were missing, if they were (s).
+    /// The step to integrate (s), and the duration of missing samples, if there are any (s).
     Elapsed { interval: T, missing: Option<T> },
 }
 
@@ -17,22 +17,24 @@ pub(crate) enum Tick<T> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Clock {
     last_us: Option<u64>,
-    /// The last step that was no gap; zero before the first.
+    /// The last step that was no gap (µs); zero before the first.
     step_us: u32,
 }
 
 impl Clock {
-    /// Steps beyond this are missing samples (µs): no stream that is slower shows how a foot turns.
+    /// A longer step than this means missing samples (µs): no slower stream shows how a foot turns.
     const GAP_US: u64 = 60_000;
-    /// … and so are shorter ones (µs) that are so many times as long as the step before: in 40 ms a foot in swing may turn by 0.4 rad.
+    /// A longer step than this (µs) means missing samples if it is also more than `LONGER` times the step before: in 40
+    /// ms a foot in swing may turn by 0.4 rad.
     const SHORT_GAP_US: u64 = 40_000;
+    /// The ratio to the step before from which on a step above `SHORT_GAP_US` is a gap.
     const LONGER: u64 = 3;
-    /// Longest step that is integrated (µs): the motion of the foot in a longer gap is not known.
+    /// The longest step that is integrated (µs): in a longer gap the motion of the foot is unknown.
     const LONGEST_US: u64 = 200_000;
-    /// A gap is no longer than this (µs): after a minute anything may have happened.
+    /// The longest duration of a gap (µs): after a minute anything may have happened.
     const MINUTE_US: u64 = 60_000_000;
 
-    /// The step to `time_us`, without taking it.
+    /// Interprets the time `time_us`, without advancing to it.
     pub(crate) fn tick<T: Scalar>(&self, time_us: u64) -> Result<Tick<T>, Error> {
         let Some(last_us) = self.last_us else { return Ok(Tick::First) };
         let elapsed = time_us.checked_sub(last_us).ok_or(Error::TimeBackwards)?;
@@ -44,7 +46,7 @@ impl Clock {
         Ok(Tick::Elapsed { interval, missing })
     }
 
-    /// For how long samples were missing in such a step (µs), if they were (s).
+    /// The duration of missing samples in a step of this length (µs), if there are any (s).
     #[cold]
     #[inline(never)]
     fn missing<T: Scalar>(&self, elapsed: u64) -> Option<T> {
@@ -53,10 +55,10 @@ impl Clock {
         is_gap.then(|| T::from_micro(elapsed.min(Self::MINUTE_US) as i32))
     }
 
-    /// Takes the step.
+    /// Advances to a time.
     pub(crate) fn set(&mut self, time_us: u64) {
         let last_us = self.last_us.replace(time_us).unwrap_or(time_us);
-        // An hour and more may leave any remainder; then one short gap may go untold.
+        // More than an hour may leave any remainder; then one short gap may go unreported.
         let step_us = (time_us as u32).wrapping_sub(last_us as u32);
         if (1..=Self::GAP_US as u32).contains(&step_us) {
             self.step_us = step_us;
@@ -95,7 +97,7 @@ mod tests {
 
     #[test]
     fn of_a_fast_stream_a_shorter_step_is_a_gap() {
-        // The step before, if there is one, and whether one of so many µs is a gap.
+        // The preceding step, if there is one, the step (µs), and whether it is a gap.
         for (before_us, elapsed_us, is_gap) in [
             (5_000, 40_000, false),
             (5_000, 40_001, true),
@@ -115,7 +117,7 @@ mod tests {
             };
             assert_eq!(missing.is_some(), is_gap, "{elapsed_us} after {before_us}");
         }
-        // A gap is no step that another is compared with.
+        // A gap is no step with which another is compared.
         let mut clock = Clock::default();
         for time_us in [0, 5_000, 905_000] {
             clock.set(time_us);

@@ -11,7 +11,7 @@ use kestirim_attitude::Orientation;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// All of a tracker but the decision when the foot stands, which the caller brings.
+/// A tracker without the stance decision, which the caller provides.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Engine<T: Scalar, N> {
@@ -22,23 +22,23 @@ pub(crate) struct Engine<T: Scalar, N> {
     strides: Strides<T>,
     health: Health<T>,
     was_stance: bool,
-    /// By how much the body turned in the step before (rad); zero after a gap, in which that is not known.
+    /// The turn of the body in the preceding step (rad); zero after a gap, in which it is unknown.
     turn: SVector<T, 3>,
-    /// How far landings have moved the foot since the last stride (m).
+    /// The distance by which landings have moved the foot since the last stride (m).
     moved: T,
-    /// A swing ended with a velocity that only a lost tilt explains; a calm stance will level the foot.
+    /// Whether a swing ended with a velocity that only a lost tilt explains; a calm stance will level the foot.
     is_tilted: bool,
     pub(crate) clipping: Clipping<T>,
 }
 
 impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
-    /// Below this SHOE statistic, (rad/s)², a stance shows where gravity is.
+    /// The SHOE statistic, (rad/s)², below which a stance shows the direction of gravity.
     const CALM: f64 = 0.1;
-    /// Rates that are repeated are left out for less than this (s): a longer step is not integrated as a whole.
+    /// Repeated rates are skipped for less than this (s): a longer step is not integrated as a whole.
     const HELD: f64 = 0.15;
-    /// A landing that moves the foot by less is no jump (m): a stance may flicker.
+    /// A landing that moves the foot by less than this is no jump (m): a stance may flicker.
     const JUMP: f64 = 0.03;
-    /// A lost tilt counts as so long without samples (s).
+    /// The time without samples for which a lost tilt counts (s).
     const UNSEEN: f64 = 0.2;
 
     pub(crate) fn new(config: Config<T>) -> Self {
@@ -57,12 +57,12 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
         }
     }
 
-    /// Whether the sample can be taken, and what its time means. Changes nothing.
+    /// Checks whether the sample can be processed, and interprets its time. Changes nothing.
     #[inline]
     pub(crate) fn examine(&self, sample: &ImuSample<T>) -> Result<(Tick<T>, Size), Error> {
         let (tick, size) = (self.clock.tick(sample.time_us)?, sample.check()?);
         let tick = match tick {
-            // What it says next is taken for the time since; one that turns evenly is not kept waiting for long.
+            // Its next reading is used for the time since; a foot that turns evenly is not delayed for long.
             Tick::Elapsed { interval, .. }
                 if self.is_held(&sample.angular_rate) && interval < T::from_f64(Self::HELD) =>
             {
@@ -73,14 +73,14 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
         Ok((tick, size))
     }
 
-    /// Whether a foot turns by exactly the rate of the sample before: its sensor was not read anew.
+    /// Whether a foot turns at exactly the rate of the preceding sample: its sensor was not read again.
     #[inline]
     fn is_held(&self, rate: &SVector<T, 3>) -> bool {
         let ([x, y, z], [a, b, c]) = (*rate.as_array(), *self.clipping.last().as_array());
         x == a && y == b && z == c && turns(rate)
     }
 
-    /// Learns of an examined sample what is the same in the whole stream: biases, and ends of ranges.
+    /// Learns from an examined sample what is constant in the whole stream: biases, and ends of ranges.
     pub(crate) fn learn(&mut self, sample: &ImuSample<T>, (tick, size): (Tick<T>, Size)) {
         if tick == Tick::Duplicate {
             return;
@@ -99,14 +99,14 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
         }
     }
 
-    /// Keeps what was learnt and forgets the stream, to begin it again.
+    /// Keeps what was learnt and forgets the stream, to restart it.
     pub(crate) fn rewind(&mut self) {
         self.clock = Clock::default();
         self.alignment = self.alignment.rewound();
         self.clipping = self.clipping.rewound();
     }
 
-    /// The sample as a detector wants it.
+    /// Converts the sample to the input of a detector.
     #[inline]
     pub(crate) fn motion(&self, sample: &ImuSample<T>) -> Motion<T> {
         let force = sample.specific_force - self.alignment.accelerometer_bias();
@@ -117,7 +117,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
         }
     }
 
-    /// Takes an examined sample, as a motion and with the verdict on it. The first stance levels the foot.
+    /// Processes an examined sample, as a motion and with the verdict on it. The first stance levels the foot.
     #[inline]
     pub(crate) fn advance(
         &mut self,
@@ -151,7 +151,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                         (across(&before, &motion.angular_rate, interval), SVector::zeros());
                     self.health.gap();
                     self.clipping.forget();
-                    // How the axis moved meanwhile is not known.
+                    // The motion of the axis meanwhile is unknown.
                     self.turn = SVector::zeros();
                     if !(self.was_stance && stands(&motion.angular_rate, missing)) {
                         self.strides.miss(missing, verdict.stance);
@@ -164,7 +164,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                     angular_rate: motion.angular_rate,
                     turn,
                 };
-                // A foot that stands hardly turns.
+                // A standing foot hardly turns.
                 if !verdict.stance {
                     step.turn += coning(&last, &turn);
                 }
@@ -186,7 +186,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                     let landing = !self.was_stance;
                     if landing && self.health.landing(&navigator.velocity(), self.config.sensor) {
                         self.is_tilted = true;
-                        // Something was not seen in the swing: a stall, an impact, a turn.
+                        // Something in the swing was missed: a stall, an impact, a turn.
                         self.strides.miss(T::from_f64(Self::UNSEEN), true);
                     }
                     if self.is_tilted && self.config.levels {
@@ -248,7 +248,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     }
 
     pub(crate) fn warnings(&self) -> Warnings {
-        // Fixed point stays at its largest value.
+        // Fixed-point numbers saturate at their largest value.
         let is_within = |navigator: &N| {
             let (position, velocity) = (navigator.position(), navigator.velocity());
             T::all_finite(position.as_array()) && T::all_finite(velocity.as_array())
@@ -259,8 +259,8 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     }
 }
 
-/// Shows a step to what knows the ends of the range, and moves on by what was missed there.
-#[inline(never)] // As below.
+/// Passes a step to the detection of clipping, and advances by what was missed at the ends of the range.
+#[inline(never)] // Seldom called: its locals stay off every sample's stack.
 fn bridge<T: Scalar, N: Navigator<T>>(
     clipping: &mut Clipping<T>,
     (health, strides): (&mut Health<T>, &mut Strides<T>),
@@ -279,26 +279,27 @@ fn bridge<T: Scalar, N: Navigator<T>>(
     });
 }
 
-/// How the body turned where samples are missing (rad): as if its rate had changed evenly.
+/// The turn of the body where samples are missing (rad), as if its rate had changed linearly.
 #[cold]
-#[inline(never)] // As below.
+#[inline(never)] // Seldom called: its locals stay off every sample's stack.
 fn across<T: Scalar>(before: &SVector<T, 3>, after: &SVector<T, 3>, interval: T) -> SVector<T, 3> {
     (before + after) * (interval * T::HALF)
 }
 
-/// Whether a foot that stood before so many seconds without samples, and turns like this after them, has stood all the time.
+/// Whether a foot that stood before `missing` seconds without samples, and turns at this rate after them, has stood all
+/// the time.
 fn stands<T: Scalar>(rate: &SVector<T, 3>, missing: T) -> bool {
-    // Briefer than a swing (s).
+    // Shorter than a swing (s).
     missing < T::from_f64(0.4) && !turns(rate)
 }
 
-/// Whether a body turns as a foot does that does not stand.
+/// Whether a body turns at a rate that no standing foot has.
 fn turns<T: Scalar>(rate: &SVector<T, 3>) -> bool {
     // rad/s
     rate.as_array().iter().any(|rate| rate.abs() >= T::HALF)
 }
 
-/// Levels a foot as its stance shows gravity, with the heading that it has.
+/// Levels a foot to the gravity that its stance shows, keeping its heading.
 #[cold]
 #[inline(never)] // It is seldom called: its locals stay off every sample's stack.
 fn level<T: Scalar, N: Navigator<T>>(

@@ -1,16 +1,16 @@
 use core::fmt;
 
-/// Reason for which a sample was refused. The tracker is as it was before the call.
+/// The reason why a sample was refused. The tracker is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Error {
-    /// A component is NaN, infinite or on a rail of fixed point.
+    /// A component is NaN, infinite or at the limit of a fixed-point type.
     NotFinite,
-    /// No sensor can have measured this: beyond 1000 g or 10⁵ °/s.
+    /// No sensor can have measured the value: beyond 1000 g or 10⁵ °/s.
     Implausible,
-    /// The time stamp is before that of the last sample that was taken.
+    /// The time stamp precedes that of the last accepted sample.
     TimeBackwards,
     /// The working memory has fewer entries than the recording has samples.
     NoMemory,

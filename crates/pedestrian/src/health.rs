@@ -3,44 +3,46 @@ use kestirim_health::Reason;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// Suspicious findings about a stream. Flags once raised stay raised.
+/// Suspicious findings about a stream. A flag that was raised stays raised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-// One flag a finding is what a reader wants to ask for by name.
+// A named flag for each finding is the most readable interface.
 #[allow(clippy::struct_excessive_bools)]
 pub struct Warnings {
-    /// Repeatedly an axis of the accelerometer showed the same large value three times in a row: its
-    /// range is too small.
+    /// An axis of the accelerometer repeatedly showed the same large value three times in a row: its range is too
+    /// small.
     pub accelerometer_saturated: bool,
-    /// The same of the gyroscope; or an axis stands at one end, whatever the noise there, and what it missed is bridged
-    /// ([`MissedTurn`](crate::MissedTurn)).
+    /// An axis of the gyroscope repeatedly showed the same large value three times in a row; or it reached an end of
+    /// its range, whatever the noise there, and what it missed is bridged ([`MissedTurn`](crate::MissedTurn)).
     pub gyroscope_saturated: bool,
-    /// At rest the accelerometer does not show 9.8 m/s²: its unit is wrong (g?) or it needs calibration.
+    /// The accelerometer at rest does not show 9.8 m/s²: its unit is wrong (g?) or it needs calibration.
     pub gravity_implausible: bool,
-    /// Angular rates beyond any foot, as if °/s were taken for rad/s.
+    /// The angular rates exceed those of any foot, as if °/s were taken for rad/s.
     pub rate_implausible: bool,
-    /// Repeatedly strides end with a velocity of metres a second left over: axes are swapped or mirrored between the
+    /// Strides repeatedly end with a residual velocity of metres per second: axes are swapped or mirrored between the
     /// two sensors, or a unit is wrong.
     pub axes_inconsistent: bool,
-    /// A swing ended with metres a second left over: the tilt was lost, by samples that are missing or wrong. It is levelled
-    /// again ([`Config::levels`](crate::Config::levels)), but the turn of that moment is not known.
+    /// A swing ended with a residual velocity of metres per second: the tilt was lost through missing or wrong samples.
+    /// It is levelled again ([`Config::levels`](crate::Config::levels)), but the turn at that moment is unknown.
     pub tilt_lost: bool,
-    /// Stride by stride too large a velocity is left over: the gyroscope is clipped, its scale or zero has changed, it
-    /// comes late, or the clock runs wrong. Or the foot jumps by a quarter of its strides or more where they end: it shuffles, or climbs a
-    /// ladder, and is taken to stand while it moves.
+    /// Stride after stride the residual velocity is too large: the gyroscope is clipped, its scale or zero has changed,
+    /// it is delayed, or the clock runs wrong.
+    ///
+    /// Or the foot jumps by a quarter of its strides or more where they end: it shuffles, or climbs a ladder, and is
+    /// assumed to stand while it moves.
     pub landings_implausible: bool,
-    /// Samples are missing: more than 60 ms at once, or more than 40 ms and three times the step before.
+    /// Samples are missing: more than 60 ms at once, or more than 40 ms and three times the preceding step.
     pub gaps: bool,
-    /// The stream showed no standstill of half a second: the gyro bias is unknown.
+    /// The stream contained no standstill of half a second: the gyro bias is unknown.
     pub never_still: bool,
-    /// The path is longer than the number type can tell (`Q12_20`: 2 km), or the foot farther away or faster: there
-    /// the numbers stand still.
+    /// The path is longer than the number type can represent (`Q12_20`: 2 km), or the foot farther away or faster: the
+    /// numbers saturate there.
     pub out_of_range: bool,
 }
 
 impl Warnings {
-    /// How far the path can be relied upon for all that.
+    /// The reliability of the path in spite of the findings.
     pub fn health(&self) -> kestirim_health::Health {
         let saturated = self.accelerometer_saturated || self.gyroscope_saturated;
         kestirim_health::Health::GOOD
@@ -62,13 +64,13 @@ pub(crate) struct Health<T: Scalar> {
     force: Repeats<T>,
     rate: Repeats<T>,
     bad_landings: u8,
-    /// Strides whose end was moved by a large share of them, less those whose end was not.
+    /// The number of strides whose end was moved by a large share of their length, minus the number of others.
     misplaced: u8,
-    /// Smoothed sizes of what is left of the velocity when a swing ends: horizontal and vertical (m/s, earth).
+    /// Smoothed residual speeds at the end of a swing: horizontal and vertical (m/s, earth).
     left_over: [T; 2],
 }
 
-/// Number of times in a row that each axis has shown the same value, and number of runs of three.
+/// The number of consecutive repetitions of each axis's value, and the number of runs of three.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Repeats<T: Scalar> {
@@ -78,11 +80,11 @@ struct Repeats<T: Scalar> {
 }
 
 impl<T: Scalar> Repeats<T> {
-    /// A coarse log repeats a value by chance, once or twice a walk; a range that is too small does so
-    /// in every stride.
+    /// The number of runs beyond chance: a coarse log repeats a value by chance once or twice in a walk; a range that
+    /// is too small does so in every stride.
     const CHANCE: u8 = 5;
 
-    /// Takes a value and tells whether an axis stays at the end of its range more often than by chance.
+    /// Processes a value and returns whether an axis stays at the end of its range more often than by chance.
     #[inline(never)] // Few values are large.
     fn update(&mut self, value: &SVector<T, 3>, large: T) -> bool {
         for axis in 0..3 {
@@ -102,21 +104,22 @@ impl<T: Scalar> Repeats<T> {
 }
 
 impl<T: Scalar> Health<T> {
-    /// Largest plausible rate, beyond the widest range of a gyroscope, 2000 °/s (rad/s).
+    /// The largest plausible rate, beyond the widest range of a gyroscope, 2000 °/s (rad/s).
     const LARGEST_RATE: f64 = 45.0;
-    /// A stride that ends with so much velocity left over (m/s) was not measured by this IMU …
+    /// A residual velocity (m/s) beyond which a stride was not measured by a healthy IMU, if it occurs often.
     const LANDING: f64 = 2.0;
-    /// … if it happens so often.
+    /// The number of such strides that is a fault.
     const LANDINGS: u8 = 4;
-    /// So much of one landing counts at most (m/s): a stumble is no fault.
+    /// The upper limit on the horizontal residual of one landing (m/s): a stumble is no fault.
     const MOST_SIDEWAYS: f64 = 2.0;
-    /// The same upwards.
+    /// The upper limit on the vertical residual of one landing (m/s).
     const MOST_UPWARDS: f64 = 0.5;
 
-    /// Where a stride ends, its landing moves the foot by less than this share of the stride. Medians of 43 recorded walks are 0.12 at the
-    /// most; that of a shuffling foot, which is taken to stand while it moves, 0.6.
+    /// The share of a stride's length beyond which its landing has displaced the foot. Medians of 43 recorded walks are
+    /// 0.12 at most; that of a shuffling foot, which is assumed to stand while it moves, is 0.6.
     const MISPLACED_SHARE: f64 = 0.25;
-    /// So many more strides with such a jump than without are a fault: recorded walks reach 4, but for a foot on a ladder.
+    /// The excess of strides with such a jump over those without that is a fault: recorded walks reach 4, except for a
+    /// foot on a ladder.
     const MISPLACED: u8 = 6;
 
     pub(crate) fn new() -> Self {
@@ -130,15 +133,15 @@ impl<T: Scalar> Health<T> {
         self.warnings
     }
 
-    /// A force came that may be at the end of a range. (Those between two such are not shown; a range that
-    /// is reached three times at the very same value is reached, with a pause or without.)
+    /// Processes a force that may be at the end of a range. (Smaller ones in between are not passed; a range that is
+    /// reached three times at the very same value is reached, with a pause or without.)
     #[inline]
     pub(crate) fn large_force(&mut self, force: &SVector<T, 3>) {
         let large = T::from_f64(ImuSample::<T>::LARGE_FORCE);
         self.warnings.accelerometer_saturated |= self.force.update(force, large);
     }
 
-    /// The same for an angular rate.
+    /// Processes an angular rate that may be at the end of a range.
     #[inline]
     pub(crate) fn large_rate(&mut self, rate: &SVector<T, 3>) {
         let large = T::from_f64(ImuSample::<T>::LARGE_RATE);
@@ -147,20 +150,20 @@ impl<T: Scalar> Health<T> {
         self.warnings.rate_implausible |= rate.as_array().iter().any(|rate| rate.abs() > limit);
     }
 
-    /// The gyroscope was at an end of its range.
+    /// Notes that the gyroscope was at an end of its range.
     pub(crate) fn clipped(&mut self) {
         self.warnings.gyroscope_saturated = true;
     }
 
-    /// Samples are missing.
+    /// Notes that samples are missing.
     pub(crate) fn gap(&mut self) {
         self.warnings.gaps = true;
     }
 
-    /// A standstill showed gravity (in units of standard gravity).
+    /// Processes the gravity that a standstill showed (in units of standard gravity).
     pub(crate) fn standstill(&mut self, gravity: T, sensor: SensorClass) {
         self.warnings.never_still = false;
-        // A bare chip's zero is off by up to 80 mg an axis.
+        // The zero of a bare chip is off by up to 80 mg per axis.
         let tolerance = match sensor {
             SensorClass::Industrial => 0.05,
             SensorClass::Consumer => 0.12,
@@ -168,7 +171,7 @@ impl<T: Scalar> Health<T> {
         self.warnings.gravity_implausible |= (gravity - T::ONE).abs() > T::from_f64(tolerance);
     }
 
-    /// A swing ended with this velocity (m/s, earth) where there should be none. Whether it is so large that the tilt
+    /// Processes the residual velocity (m/s, earth) at the end of a swing; returns whether it is so large that the tilt
     /// must be lost.
     pub(crate) fn landing(&mut self, velocity: &SVector<T, 3>, sensor: SensorClass) -> bool {
         let [x, y, z] = velocity.as_array().map(T::abs);
@@ -183,13 +186,13 @@ impl<T: Scalar> Health<T> {
             self.bad_landings = self.bad_landings.saturating_add(1);
         }
         self.warnings.tilt_lost |= is_bad;
-        // A clipped gyroscope leaves as much: it is no sign of wrong axes.
+        // A clipped gyroscope leaves as much, so this is no sign of wrong axes.
         self.warnings.axes_inconsistent |=
             self.bad_landings >= Self::LANDINGS && !self.warnings.gyroscope_saturated;
         is_bad
     }
 
-    /// A stride of this length ended, and its landing moved the foot by so much (m).
+    /// Processes a stride of this length whose landing moved the foot by `moved` (m).
     pub(crate) fn stride(&mut self, length: T, moved: T) {
         self.misplaced = if moved > length * T::from_f64(Self::MISPLACED_SHARE) {
             self.misplaced.saturating_add(1)
@@ -200,7 +203,7 @@ impl<T: Scalar> Health<T> {
     }
 }
 
-/// Brings an average over eight landings up to date.
+/// Updates an average over eight landings.
 #[inline]
 fn smoothed<T: Scalar>(average: &mut T, size: T) -> T {
     *average += (size - *average) * T::from_f64(1.0 / 8.0);

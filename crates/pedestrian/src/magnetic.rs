@@ -3,29 +3,30 @@ use kestirim_attitude::Orientation;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// The rate at which a walk's heading drifts, from a magnetometer on the same foot, where one stands twice.
+/// Estimates the rate at which a walk's heading drifts, from a magnetometer on the same foot, where it stands twice at
+/// a place.
 ///
-/// Indoors the field's direction differs by tens of degrees from one stride to the next, so a compass is no heading there.
-/// But where a foot comes back to where it has stood, the field is the same again, whatever iron distorts it: what the two
-/// stands differ by is the error of the heading. Stands are compared
-/// - at the same place, as far as the path tells,
+/// Indoors the field's direction differs by tens of degrees from one stride to the next, so a compass gives no heading
+/// there. But where a foot returns to a place where it has stood, the field is the same again, whatever iron distorts
+/// it: the difference between the two stands is the error of the heading. Stands are compared
+/// - at the same place, as far as the path shows,
 /// - with the sensor in the same attitude, so that its own iron, hard and soft, is the same in both,
-/// - and with the same strength and dip of the field: else the place is another.
+/// - and with the same strength and dip of the field: otherwise the place is another.
 ///
-/// A heading error no larger than two stands at the same place differ by is none. Who corrects a recorded path turns each
-/// step of it back by [`MagneticHeading::rate`] times the time since the start.
+/// A heading error no larger than the usual difference between two stands at the same place is ignored. To correct a
+/// recorded path, turn each step of it back by [`MagneticHeading::rate`] times the time since the start.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MagneticHeading<T: Scalar> {
     stands: [Option<Stand<T>>; CAPACITY],
     now: Option<Stand<T>>,
-    /// Σ Δt² of all pairs (min²).
+    /// The sum Σ Δt² over all pairs (min²).
     times: T,
-    /// Σ Δt·Δψ of all pairs (min·rad).
+    /// The sum Σ Δt·Δψ over all pairs (min·rad).
     turned: T,
 }
 
-/// Stands that are remembered.
+/// The number of stands that are remembered.
 const CAPACITY: usize = 8;
 
 /// A stand of the foot.
@@ -34,32 +35,33 @@ const CAPACITY: usize = 8;
 struct Stand<T: Scalar> {
     begun_us: u64,
     ended_us: u64,
-    /// Where (m, earth).
+    /// The position (m, earth).
     position: SVector<T, 3>,
-    /// Where up was in the sensor's axes.
+    /// The direction of up in the sensor's axes.
     up: SVector<T, 3>,
-    /// The mean of the field, in the sensor's axes and in the earth's.
+    /// The mean field in the sensor's axes.
     body: SVector<T, 3>,
+    /// The mean field in the earth's axes.
     earth: SVector<T, 3>,
-    /// The mean of the specific force (m/s², earth): where it points is up, whatever tilt the tracker has.
+    /// The mean specific force (m/s², earth), which points up whatever tilt the tracker has.
     force: SVector<T, 3>,
-    /// Samples of the field: the mean is of so many.
+    /// The number of field samples in the mean.
     count: u16,
 }
 
 impl<T: Scalar> Stand<T> {
-    /// A stance of walking is over sooner (µs).
+    /// The shortest stand (µs): a stance in walking is shorter.
     const SHORTEST_US: u64 = 1_000_000;
-    /// Largest difference of the field's strength, relative to it.
+    /// The largest relative difference of the field's strength.
     const STRENGTH: f64 = 0.02;
-    /// Largest difference of the horizontal share of the field, 2° of dip.
+    /// The largest difference of the horizontal share of the field, 2° of dip.
     const DIP: f64 = 0.03;
-    /// Smallest cosine between the attitudes, 20°.
+    /// The smallest cosine between the attitudes, 20°.
     const ATTITUDE: f64 = 0.94;
-    /// The least horizontal share of a field that tells a heading.
+    /// The smallest horizontal share of a field that gives a heading.
     const HORIZONTAL: f64 = 0.1;
 
-    /// With the field levelled by the force: at 70° of dip a tilt turns the field by three times itself.
+    /// The stand with its field levelled by the force: at 70° of dip a tilt turns the field by three times itself.
     fn levelled(mut self) -> Option<Self> {
         self.earth = Orientation::from_specific_force(&self.force)?.to_earth(&self.earth);
         Some(self)
@@ -74,7 +76,7 @@ impl<T: Scalar> Stand<T> {
         self.horizontal().hypot(self.earth.as_array()[2])
     }
 
-    /// The heading error since another stand, if this is the same place again (rad).
+    /// The heading error since another stand, if both are at the same place (rad).
     fn turned_since(&self, other: &Self, deviation: T) -> Option<T> {
         let ([x, y, _], [ox, oy, _]) = (*self.position.as_array(), *other.position.as_array());
         let [strength, before] = [self.strength(), other.strength()];
@@ -99,12 +101,14 @@ impl<T: Scalar> Default for MagneticHeading<T> {
 }
 
 impl<T: Scalar> MagneticHeading<T> {
-    /// Standard deviation of what two stands at the same place differ by (rad): half a degree, on recorded walks.
+    /// The standard deviation of the difference between two stands at the same place (rad): half a degree, on recorded
+    /// walks.
     const REPEATABILITY: f64 = 0.0087;
 
-    /// Takes a sample, the estimate that was made of it, the field at its time (body, in any unit in which its square is a
-    /// number) if it was measured, and the standard deviation of the position (m,
-    /// [`PathUncertainty`](crate::PathUncertainty)).
+    /// Processes a sample and the estimate that was made of it.
+    ///
+    /// `field` is the field at its time (body, in any unit in which its square is representable) if it was measured,
+    /// and `deviation` the standard deviation of the position (m, [`PathUncertainty`](crate::PathUncertainty)).
     pub fn update(
         &mut self,
         sample: &ImuSample<T>,
@@ -140,7 +144,7 @@ impl<T: Scalar> MagneticHeading<T> {
         }
     }
 
-    /// Ends the stand that the foot is in.
+    /// Ends the current stand.
     pub fn finish(&mut self, deviation: T) {
         let Some(stand) = self.now.take().and_then(Stand::levelled) else { return };
         let lasted_us = stand.ended_us.saturating_sub(stand.begun_us);
@@ -159,7 +163,8 @@ impl<T: Scalar> MagneticHeading<T> {
         }
     }
 
-    /// The rate at which the heading drifts (rad/s, anticlockwise from above), where it shows. See [`SensorClass::drifts_by`](crate::SensorClass::drifts_by).
+    /// The rate at which the heading drifts (rad/s, anticlockwise from above), if it is significant. See
+    /// [`SensorClass::drifts_by`](crate::SensorClass::drifts_by).
     pub fn rate(&self) -> Option<T> {
         let least = T::from_f64(2.0 * Self::REPEATABILITY) * self.times.sqrt();
         (self.times > T::ZERO && self.turned.abs() > least)
@@ -167,7 +172,7 @@ impl<T: Scalar> MagneticHeading<T> {
     }
 }
 
-/// Microseconds in minutes.
+/// Converts microseconds to minutes.
 fn minutes<T: Scalar>(us: u64) -> T {
     T::from_micro((us / 60).min(i32::MAX as u64) as i32)
 }
@@ -182,16 +187,16 @@ mod tests {
     /// The second of two stands.
     #[derive(Clone, Copy)]
     struct Second {
-        /// Error of the heading (rad).
+        /// The error of the heading (rad).
         error: f64,
-        /// How far it is from the first (m).
+        /// The distance from the first stand (m).
         distance: f64,
         field: Vector3<f64>,
-        /// When it begins (s).
+        /// The beginning of the second stand (s).
         begin: u64,
-        /// How long both last (hundredths of a second).
+        /// The duration of both (hundredths of a second).
         samples: u64,
-        /// By how much the sensor is turned (rad).
+        /// The rotation of the sensor between the stands (rad).
         turned: f64,
     }
 
@@ -207,7 +212,7 @@ mod tests {
             Second { error: 0.0, distance: 0.0, field: FIELD, begin: 0, turned: 0.0, ..second };
         let about_up =
             |angle| Orientation::identity().turned_in_earth(&Vector3::new(0.0, 0.0, angle));
-        // What a sensor hears beside its field is of the other sign in the second.
+        // The sensor's noise has the opposite sign in the second stand.
         for (Second { error, distance, field, begin, samples, turned }, sign) in
             [(first, 1.0), (second, -1.0)]
         {

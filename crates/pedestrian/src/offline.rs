@@ -7,37 +7,38 @@ use kestirim_scalar::Scalar;
 
 /// Tracks a foot through a recorded walk, looking ahead.
 ///
-/// Two things are better known afterwards: the biases, from every standstill of the
-/// recording, and the stances, whose SHOE statistic is compared with the smallest of 0.6 s before and after. An
-/// iterator over the estimates, one a sample; memory is the recording and one number a sample, both the
-/// caller's.
+/// Two things are better known afterwards: the biases, from every standstill of the recording, and the stances, whose
+/// SHOE statistic is compared with the smallest within 0.6 s before and after.
+///
+/// An iterator over the estimates, one per sample; the memory needed is the recording and one number per sample, both
+/// provided by the caller.
 #[derive(Debug)]
 pub struct OfflineTracker<'a, T: Scalar, N> {
     engine: Engine<T, N>,
     samples: &'a [ImuSample<T>],
     statistic: &'a [T],
     minimum: RecentMinimum<T>,
-    /// The foot always stands below this, (rad/s)².
+    /// The statistic below which the foot always stands, (rad/s)².
     floor: T,
     next: usize,
     ahead: usize,
 }
 
 impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
-    /// The foot stands below so many times the smallest SHOE statistic around …
+    /// The threshold as a multiple of the smallest SHOE statistic around a sample.
     const FACTOR: f64 = 1.5;
-    /// … and always below this, (rad/s)², of who walks slowly a share.
+    /// The statistic, (rad/s)², below which the foot always stands; for a slow walker only a share of it.
     const FLOOR: f64 = 0.15;
-    /// Half of the span over which the smallest statistic is sought (µs).
+    /// Half of the span over which the smallest statistic is searched (µs).
     const LOOK_US: u64 = 600_000;
-    /// The same to both sides, in bins.
+    /// The full span over which the smallest statistic is searched, in bins.
     const LOOK_BINS: usize = 12;
 
-    /// Prepares a walk. `statistic` is working memory for the SHOE statistic, an entry a sample.
+    /// Prepares a walk. `statistic` is working memory for the SHOE statistic, with an entry per sample.
     ///
     /// # Errors
-    /// The index of the first sample that no tracker can take, and why. (The entries of `statistic` that are
-    /// missing count as such a sample: [`Error::NoMemory`].)
+    /// The index of the first sample that no tracker can process, and why. (A missing entry of `statistic` counts as
+    /// such a sample: [`Error::NoMemory`].)
     pub fn new(
         config: Config<T>,
         samples: &'a [ImuSample<T>],
@@ -53,7 +54,7 @@ impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
         }
         engine.rewind();
         centred_statistic(&engine, samples, statistic);
-        // The whole walk's, or of a long one the last twenty minutes'.
+        // The level of the whole walk, or of the last twenty minutes of a long one.
         let mut swing = SwingLevel::<T, 1_000>::new();
         for (sample, &statistic) in samples.iter().zip(&*statistic) {
             swing.push(sample.time_us as u32, statistic);
@@ -68,7 +69,7 @@ impl<'a, T: Scalar, N: Navigator<T>> OfflineTracker<'a, T, N> {
         self.engine.finish()
     }
 
-    /// The horizontal path walked so far, from stance to stance (m).
+    /// The length of the horizontal path walked so far, from stance to stance (m).
     pub fn path_length(&self) -> T {
         self.engine.path_length()
     }
@@ -113,7 +114,7 @@ impl<T: Scalar, N: Navigator<T>> Iterator for OfflineTracker<'_, T, N> {
     }
 }
 
-/// The statistic T of the window around each sample, instead of the one that ends in it.
+/// Computes the statistic T of the window around each sample, instead of the one that ends at it.
 fn centred_statistic<T: Scalar, N: Navigator<T>>(
     engine: &Engine<T, N>,
     samples: &[ImuSample<T>],

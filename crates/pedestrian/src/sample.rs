@@ -14,25 +14,26 @@ use nalgebra::SVector;
     ))
 )]
 pub struct ImuSample<T: Scalar> {
-    /// Time of the sample (µs since any moment). Integers, because a float's seconds grow coarse in an hour.
+    /// The time of the sample (µs since an arbitrary moment), an integer because a float's seconds grow coarse within
+    /// an hour.
     pub time_us: u64,
-    /// Specific force, as an accelerometer measures it (m/s², body): +g upwards at rest.
+    /// The specific force, as measured by an accelerometer (m/s², body): +g upwards at rest.
     pub specific_force: SVector<T, 3>,
-    /// Angular rate, as a gyroscope measures it (rad/s, body).
+    /// The angular rate, as measured by a gyroscope (rad/s, body).
     pub angular_rate: SVector<T, 3>,
 }
 
 impl<T: Scalar> ImuSample<T> {
-    /// 1000 g, in m/s².
+    /// The largest specific force, 1000 g (m/s²).
     const MAX_FORCE: f64 = 9806.65;
-    /// 10⁵ °/s, in rad/s.
+    /// The largest angular rate, 10⁵ °/s (rad/s).
     const MAX_RATE: f64 = 1745.33;
-    /// A little below the smallest range of an accelerometer, 2 g (m/s²).
+    /// A specific force a little below the smallest range of an accelerometer, 2 g (m/s²).
     pub(crate) const LARGE_FORCE: f64 = 18.0;
-    /// A little below the smallest range of a gyroscope, 250 °/s (rad/s).
+    /// An angular rate a little below the smallest range of a gyroscope, 250 °/s (rad/s).
     pub(crate) const LARGE_RATE: f64 = 4.2;
 
-    /// Refuses what no sensor can have measured.
+    /// Refuses a sample that no sensor can have measured.
     #[inline]
     pub(crate) fn check(&self) -> Result<Size, Error> {
         Ok(Size {
@@ -49,7 +50,7 @@ pub(crate) struct Size {
     pub(crate) large_rate: bool,
 }
 
-/// Whether a component is at least `large`; most are not, and then nothing else needs to be asked.
+/// Whether a component is at least `large`; most are not, and then no further check is needed.
 #[inline]
 fn is_large<T: Scalar>(vector: &SVector<T, 3>, large: f64, max: f64) -> Result<bool, Error> {
     if within(vector, T::from_f64(large)) {

@@ -12,22 +12,22 @@ pub enum SensorClass {
     Consumer,
 }
 
-/// Standard deviations of a class before its first sample.
+/// The prior standard deviations of a class.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Prior {
-    /// Standard deviation of the gyro bias at power-on (rad/s).
+    /// The standard deviation of the gyro bias at power-on (rad/s).
     pub(crate) gyro_bias: f64,
-    /// Standard deviation of the accelerometer's magnitude at rest, relative to g.
+    /// The standard deviation of the accelerometer's magnitude at rest, relative to g.
     pub(crate) gravity: f64,
 }
 
-/// Process noise of an error-state filter.
+/// The process noise of an error-state filter.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Noise<T> {
     /// Velocity random walk, with scale and mounting errors in a swing absorbed: 0.3 m/s²/√Hz squared, scaled.
     pub(crate) velocity_variance: T,
-    /// Angle random walk, with the same absorbed: 0.005 or 0.02 rad/s/√Hz squared, scaled.
+    /// Angle random walk, with scale and mounting errors in a swing absorbed: 0.005 or 0.02 rad/s/√Hz squared, scaled.
     pub(crate) attitude_variance: T,
 }
 
@@ -39,9 +39,11 @@ impl SensorClass {
         }
     }
 
-    /// What a healthy sensor leaves of the velocity when a swing ends, horizontal and vertical, on average over eight
-    /// strides at most (m/s). Of 30 walks with whole gyroscopes none left more than 0.57 and 0.09 (industrial), 0.40
-    /// and 0.17; a scale 5 % wrong leaves 0.16 to 0.22 upwards, a zero 3 °/s wrong 1.0 to 1.8 sideways.
+    /// The largest residual velocity of a healthy sensor at the end of a swing, horizontal and vertical, averaged over
+    /// eight strides (m/s).
+    ///
+    /// Of 30 walks with intact gyroscopes none left more than 0.57 and 0.09 (industrial), 0.40 and 0.17 (consumer); a
+    /// scale that is 5 % wrong leaves 0.16 to 0.22 upwards, a zero that is 3 °/s wrong 1.0 to 1.8 sideways.
     #[inline] // So that the constants fold: without that, double precision is linked.
     pub(crate) fn landing<T: Scalar>(self) -> [T; 2] {
         match self {
@@ -50,8 +52,8 @@ impl SensorClass {
         }
     }
 
-    /// Standard deviation of the constant rate at which the heading of a walk drifts (rad/s).
-    #[inline] // As above.
+    /// The standard deviation of the constant rate at which the heading of a walk drifts (rad/s).
+    #[inline] // So that the constants fold.
     pub fn heading_rate<T: Scalar>(self) -> T {
         match self {
             Self::Industrial => T::from_f64(0.00048),
@@ -59,8 +61,8 @@ impl SensorClass {
         }
     }
 
-    /// Standard deviation of the scale of all strides of a walk.
-    #[inline] // As above.
+    /// The standard deviation of the common scale of all strides of a walk.
+    #[inline] // So that the constants fold.
     pub fn stride_scale<T: Scalar>(self) -> T {
         match self {
             Self::Industrial => T::from_f64(0.005),
@@ -68,16 +70,18 @@ impl SensorClass {
         }
     }
 
-    /// Whether the heading of such a sensor may drift at this rate (rad/s), within four standard deviations. What turns faster where
-    /// a foot stood twice is the field, because iron came near, or the magnetometer, which then says nothing of the heading.
-    #[inline] // As above.
+    /// Whether the heading of such a sensor may drift at this rate (rad/s), within four standard deviations.
+    ///
+    /// A faster turn where a foot stood twice is due to the field, because iron came near, or to the magnetometer,
+    /// which then shows nothing about the heading.
+    #[inline] // So that the constants fold.
     pub fn drifts_by<T: Scalar>(self, rate: T) -> bool {
         rate.abs() < self.heading_rate::<T>() * T::from_f64(4.0)
     }
 
-    /// Standard deviation of the error in height that all strides of a walk have alike (m): that of 24 and 7 recorded walks on level
-    /// ground.
-    #[inline] // As above.
+    /// The standard deviation of the height error that is common to all strides of a walk (m): that of 24 and 7
+    /// recorded walks on level ground.
+    #[inline] // So that the constants fold.
     pub fn height_drift<T: Scalar>(self) -> T {
         match self {
             Self::Industrial => T::from_f64(0.012),
@@ -85,7 +89,7 @@ impl SensorClass {
         }
     }
 
-    /// Variances a second, multiplied by `scale`.
+    /// Variances per second, multiplied by `scale`.
     pub(crate) fn noise<T: Scalar>(self, scale: f64) -> Noise<T> {
         let attitude = match self {
             Self::Industrial => 0.005,

@@ -1,4 +1,4 @@
-//! What stored estimators are. Raise the version of one that is stored otherwise than before.
+//! Layouts of stored estimators. Raise the version of one whose stored form changes.
 
 use crate::detector::{Adaptive, AngularRateEnergy, FixedShoe, Magnitude, MovingVariance};
 use crate::{Ekf, Lite, MagneticHeading, PathUncertainty, Tracker};
@@ -13,7 +13,7 @@ layout! {
     [T: Scalar] for Magnitude<T> as "stance/magnitude", 1, T, [];
     [T: Scalar] for MovingVariance<T> as "stance/variance", 1, T, [];
     [T: Scalar] for AngularRateEnergy<T> as "stance/rate", 1, T, [];
-    // A tracker is of its navigator and of its detector, whichever they are.
+    // The layout of a tracker includes those of its navigator and its detector.
     [T: Scalar, N: Layout, D: Layout] for Tracker<T, N, D>
         as N::NAME, 5, T, [N::VERSION, Name::new(D::NAME).code(), D::VERSION];
     [T: Scalar] for PathUncertainty<T> as "pedestrian/path", 3, T, [];

@@ -13,24 +13,23 @@ use nalgebra::SVector;
     ))
 )]
 pub struct Stride<T: Scalar> {
-    /// The end of the stance it arrived at (µs, the samples' clock).
+    /// The end of the stance at which the stride arrived (µs, the samples' clock).
     pub time_us: u64,
-    /// Position of that stance (m, earth, from the start).
+    /// The position of that stance (m, earth, from the start).
     pub position: SVector<T, 3>,
-    /// Horizontal distance from the stance before (m).
+    /// The horizontal distance from the preceding stance (m).
     pub length: T,
-    /// Time since the end of the stance before (s).
+    /// The time since the end of the preceding stance (s).
     pub duration: T,
-    /// Turn of its direction from that of the stride before, anticlockwise from above (rad); zero
-    /// for the first.
+    /// The change of direction from the preceding stride, anticlockwise from above (rad); zero for the first.
     pub heading_change: T,
-    /// For how long it is not known how the foot moved on the way (s): where samples are missing while it may have moved, at most
-    /// 60 s each time; and 0.2 s where the tilt was lost.
+    /// The time for which the foot's motion on the way is unknown (s): where samples are missing while it may have
+    /// moved, at most 60 s each time; and 0.2 s where the tilt was lost.
     pub unseen: T,
-    /// By how much the body turned beyond the end of its gyroscope's range on the way, as it was bridged (rad).
+    /// The bridged turn of the body beyond the end of its gyroscope's range on the way (rad).
     pub bridged: T,
-    /// Relative error of gravity at rest so far, with its standard deviation: of the accelerometer's scale, which makes strides wrong, too, or
-    /// of its zero.
+    /// The relative error of gravity at rest so far, combined with its standard deviation. It is due to the
+    /// accelerometer's scale, which affects strides, too, or to its zero.
     pub gravity_off: T,
 }
 
@@ -50,13 +49,13 @@ pub(crate) struct Strides<T: Scalar> {
     last: Option<Footprint<T>>,
     heading: Option<T>,
     path_length: T,
-    /// On the way to the next footprint, and to the one after it.
+    /// The unseen time on the way to the next footprint, and to the one after it (s).
     unseen: [T; 2],
     bridged: T,
 }
 
 impl<T: Scalar> Strides<T> {
-    /// A foot that moved less (m) shuffled or was misjudged; it made no stride.
+    /// The shortest stride (m): a foot that moved less shuffled or was misjudged.
     const SHORTEST: f64 = 0.1;
 
     pub(crate) fn new() -> Self {
@@ -65,12 +64,12 @@ impl<T: Scalar> Strides<T> {
         Self { standing: None, last: None, heading: None, path_length, unseen, bridged }
     }
 
-    /// The horizontal path from stance to stance so far (m).
+    /// The length of the horizontal path so far, from stance to stance (m).
     pub(crate) fn path_length(&self) -> T {
         self.path_length
     }
 
-    /// It is not known how the foot moved for so long (s), after which it stands or not.
+    /// Notes that the foot's motion is unknown for a time (s), after which it stands or not.
     #[cold]
     pub(crate) fn miss(&mut self, seconds: T, stance: bool) {
         let [to_next, to_one_after] = &mut self.unseen;
@@ -78,13 +77,13 @@ impl<T: Scalar> Strides<T> {
         *(if has_left { to_one_after } else { to_next }) += seconds;
     }
 
-    /// The body turned by so much more than its gyroscope saw (rad).
+    /// Notes that the body turned by more than its gyroscope measured (rad).
     pub(crate) fn bridge(&mut self, turn: &SVector<T, 3>) {
         let [x, y, z] = *turn.as_array();
         self.bridged += x.hypot(y).hypot(z);
     }
 
-    /// Takes the next position; a stride is complete when the stance it led to ends.
+    /// Processes the next position; a stride is complete when the stance to which it led ends.
     #[inline]
     pub(crate) fn update(
         &mut self,
@@ -99,11 +98,11 @@ impl<T: Scalar> Strides<T> {
         self.finish()
     }
 
-    /// Ends the stance there is, if any.
+    /// Ends the current stance, if any.
     pub(crate) fn finish(&mut self) -> Option<Stride<T>> {
         let footprint = self.standing.take()?;
         let [unseen, next] = self.unseen;
-        // Until a stride tells it, it is on the way to the next one.
+        // Until a stride reports it, it belongs to the way to the next one.
         self.unseen = [unseen + next, T::ZERO];
         let Some(last) = self.last else {
             self.last = Some(footprint);
@@ -135,7 +134,7 @@ impl<T: Scalar> Strides<T> {
     }
 }
 
-/// An angle between −2π and 2π brought to −π..=π.
+/// Wraps an angle between −2π and 2π to −π..=π.
 fn wrapped<T: Scalar>(angle: T) -> T {
     if angle > T::PI {
         angle - T::PI - T::PI
@@ -151,7 +150,7 @@ mod tests {
     use super::*;
     use core::f64::consts::PI;
 
-    /// Stances of half a second and swings of another, at these places.
+    /// Stances and swings of half a second each, at these places.
     fn walked<const K: usize>(places: [[f64; 2]; K]) -> ([Option<Stride<f64>>; K], f64) {
         let mut strides = Strides::new();
         let mut begin_us = 0;
@@ -180,7 +179,7 @@ mod tests {
         assert_eq!(first.time_us, 1_490_000);
         assert_eq!(first.position, SVector::from([0.6, 0.8, 0.3]));
         assert!((first.duration - 1.0).abs() < 1e-9 && first.heading_change == 0.0, "{first:?}");
-        // The shuffle is no stance of its own: what follows it began before.
+        // The shuffle is no stance of its own: the next stride began before it.
         assert!((second.length - 1.0).abs() < 1e-9 && (second.duration - 2.0).abs() < 1e-9);
         assert!((second.heading_change - (PI - 0.8_f64.atan2(0.6))).abs() < 1e-9, "{second:?}");
     }

@@ -7,18 +7,18 @@ use kestirim_attitude::Orientation;
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// Settings of sensor and foot.
+/// The settings of sensor and foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config<T> {
     /// The class of the IMU.
     pub sensor: SensorClass,
-    /// Height of the sensor above the ball of the foot, about which the foot rolls in stance (m). Zero
-    /// takes the foot for motionless.
+    /// The height of the sensor above the ball of the foot, about which the foot rolls in stance (m). Zero treats the
+    /// foot as motionless.
     pub contact_height: T,
-    /// Whether a foot whose tilt was lost is levelled at the next calm stance. A detector with a threshold of its own takes
-    /// a moving foot for standing so often that this may do harm.
+    /// Whether a foot whose tilt was lost is levelled at the next calm stance. A detector with a threshold of its own
+    /// judges a moving foot as standing so often that this may do harm.
     pub levels: bool,
 }
 
@@ -29,7 +29,7 @@ impl<T: Scalar> Default for Config<T> {
     }
 }
 
-/// Estimate of the foot after a sample.
+/// The estimate of the foot's state after a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -41,13 +41,13 @@ impl<T: Scalar> Default for Config<T> {
     ))
 )]
 pub struct Estimate<T: Scalar> {
-    /// Time of the sample (µs, the samples' clock).
+    /// The time of the sample (µs, the samples' clock).
     pub time_us: u64,
-    /// Position of the sensor (m, earth: z up, from the start).
+    /// The position of the sensor (m, earth: z up, from the start).
     pub position: SVector<T, 3>,
-    /// Velocity of the sensor (m/s, earth).
+    /// The velocity of the sensor (m/s, earth).
     pub velocity: SVector<T, 3>,
-    /// Orientation of the sensor, body → earth.
+    /// The orientation of the sensor, body → earth.
     pub orientation: Orientation<T>,
     /// Whether the foot stands.
     pub stance: bool,
@@ -55,7 +55,7 @@ pub struct Estimate<T: Scalar> {
     pub stride: Option<Stride<T>>,
 }
 
-/// Tracks a foot, strictly causally: an estimate knows the samples up to its own and no later one.
+/// Tracks a foot, strictly causally: an estimate depends on the samples up to its own and on no later one.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -76,23 +76,25 @@ pub type LiteTracker<T> = Tracker<T, Lite<T>>;
 pub type EkfTracker<T> = Tracker<T, Ekf<T>>;
 
 impl<T: Scalar, N: Navigator<T>> Tracker<T, N> {
-    /// A tracker with the adaptive detector.
+    /// Creates a tracker with the adaptive detector.
     pub fn new(config: Config<T>) -> Self {
         Self::with_detector(config, Adaptive::default())
     }
 }
 
 impl<T: Scalar, N: Navigator<T>, D: StanceDetector<T>> Tracker<T, N, D> {
-    /// A tracker with a detector of your choice.
+    /// Creates a tracker with a given detector.
     pub fn with_detector(config: Config<T>, detector: D) -> Self {
         Self { engine: Engine::new(config), detector }
     }
 
-    /// Takes the next sample. One with the same time as the last is taken for a row written twice and
-    /// changes nothing; so does one with exactly the rates of the last while the foot turns, for 0.15 s: its sensor was not read anew.
+    /// Processes the next sample.
+    ///
+    /// A sample with the time of the last one is a row written twice and changes nothing; neither does one with exactly
+    /// the rates of the last one while the foot turns, for 0.15 s: its sensor was not read again.
     ///
     /// # Errors
-    /// [`Error`] if the sample cannot have been measured or is out of order; the tracker is as it was.
+    /// [`Error`] if the sample cannot have been measured or is out of order; the tracker is unchanged.
     #[inline]
     pub fn update(&mut self, sample: &ImuSample<T>) -> Result<Estimate<T>, Error> {
         let examined = self.engine.examine(sample)?;
@@ -110,7 +112,7 @@ impl<T: Scalar, N: Navigator<T>, D: StanceDetector<T>> Tracker<T, N, D> {
         self.engine.finish()
     }
 
-    /// The horizontal path walked, from stance to stance (m).
+    /// The length of the horizontal path walked, from stance to stance (m).
     pub fn path_length(&self) -> T {
         self.engine.path_length()
     }
@@ -120,7 +122,7 @@ impl<T: Scalar, N: Navigator<T>, D: StanceDetector<T>> Tracker<T, N, D> {
         self.engine.warnings()
     }
 
-    /// Biases as learnt from standstills.
+    /// The biases learnt from standstills.
     pub fn alignment(&self) -> &Alignment<T> {
         &self.engine.alignment
     }

@@ -2,19 +2,20 @@ use crate::{SensorClass, Stride};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// Standard deviation of the position that a tracker's strides lead to.
+/// The standard deviation of the position to which a tracker's strides lead.
 ///
-/// It stands beside the tracker: who does not ask for it does not pay for it. Three things make a walked path wrong,
-/// each by a constant of the sensor's class, fitted to walks with known truth
-/// ([the book](https://github.com/kestirim/kestirim/blob/main/docs/src/reliability.md) has the table):
+/// It is separate from the tracker, and costs nothing unless used. Three things make a walked path wrong, each by a
+/// constant of the sensor's class, fitted to walks with known truth ([the
+/// book](https://github.com/kestirim/kestirim/blob/main/docs/src/reliability.md) has the table):
 /// - a rate b at which the heading drifts: the error is b·Σ tₖ·J·Δpₖ, with J a quarter turn;
-/// - a scale s of all strides: s times the distance from the start; half of what gravity at rest is off by adds to it, since that may be
-///   the accelerometer's scale or its zero;
-/// - an error of each stride by itself, of the footprint and of the height, and for the height one that is the same in all.
+/// - a scale s of all strides: s times the distance from the start; half of the relative error of gravity at rest adds
+///   to it, since that may be the accelerometer's scale or its zero;
+/// - an independent error of each stride, of the footprint and of the height, and for the height one that is common to
+///   all.
 ///
-/// What a stride says of a way that was not seen and of turns beyond the gyroscope's range is added: a heading that may be another
-/// from then on, and the way itself. The heading at the start is the frame's, so it has no error. Another fault of the sensor is no
-/// part of it: see [`Warnings`](crate::Warnings).
+/// The unseen parts of a stride and its turns beyond the gyroscope's range are added: an uncertain heading from then
+/// on, and the way itself. The heading at the start defines the frame, so it has no error. Other faults of the sensor
+/// are not included: see [`Warnings`](crate::Warnings).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -27,37 +28,37 @@ use nalgebra::SVector;
 )]
 pub struct PathUncertainty<T: Scalar> {
     sensor: SensorClass,
-    /// Where the last stride ended (m, earth).
+    /// The position at the end of the last stride (m, earth).
     position: SVector<T, 3>,
-    /// Standard deviation of the heading (rad).
+    /// The standard deviation of the heading (rad).
     heading: T,
-    /// Standard deviation of the way that was not seen (m, each axis).
+    /// The standard deviation of the unseen way (m, each axis).
     unseen: T,
-    /// What a standard deviation of the heading's rate moves the position by (m, earth: x, y).
+    /// The displacement of the position by one standard deviation of the heading's rate (m, earth: x, y).
     turned: SVector<T, 2>,
-    /// Standard deviation of the scale of all strides.
+    /// The standard deviation of the scale of all strides.
     scale: T,
-    /// How many there were: a number, since a conversion would link double precision.
+    /// The number of strides: of type `T`, since a conversion would link double precision.
     strides: T,
 }
 
 impl<T: Scalar> PathUncertainty<T> {
-    /// Standard deviation of a footprint in the plane, each axis (m).
+    /// The standard deviation of a footprint in the plane, each axis (m).
     pub const FOOTPRINT: f64 = 0.028;
-    /// Standard deviation of the height gained in a stride (m).
+    /// The standard deviation of the height gained in a stride (m).
     pub const HEIGHT: f64 = 0.047;
-    /// Standard deviation of the speed while it is not known how the foot moves, each axis (m/s), …
+    /// The standard deviation of the speed while the foot's motion is unknown, each axis (m/s).
     pub const UNSEEN_SPEED: f64 = 1.5;
-    /// … and of the rate at which the heading is lost then (rad/s), …
+    /// The standard deviation of the rate at which the heading is lost while the foot's motion is unknown (rad/s).
     pub const UNSEEN_RATE: f64 = 1.5;
-    /// … and its share of a turn beyond the gyroscope's range, as it was bridged.
+    /// The standard deviation of the heading after a bridged turn beyond the gyroscope's range, as a share of the turn.
     pub const BRIDGED_SHARE: f64 = 0.02;
-    /// This share of the error of gravity at rest is taken for a scale of all strides; the rest is a zero.
+    /// The share of the error of gravity at rest that is attributed to the scale of all strides; the rest is a zero.
     pub const SCALE_SHARE: f64 = 0.5;
-    /// Standard deviation of a heading that may be any (rad).
+    /// The standard deviation of an arbitrary heading (rad).
     pub const LOST_HEADING: f64 = 1.8;
 
-    /// At the start of a walk: nothing is uncertain but where the foot stands exactly.
+    /// The uncertainty at the start of a walk: only the exact position of the standing foot is uncertain.
     pub fn new(sensor: SensorClass) -> Self {
         let (position, turned) = (SVector::zeros(), SVector::zeros());
         let zero = T::ZERO;
@@ -72,14 +73,14 @@ impl<T: Scalar> PathUncertainty<T> {
         }
     }
 
-    /// Standard deviation of the scale of all strides, where gravity at rest is off by this share of itself
+    /// The standard deviation of the scale of all strides for a relative error of gravity at rest
     /// ([`Stride::gravity_off`]).
     #[inline] // So that the constants fold: without that, double precision is linked.
     pub fn scale(sensor: SensorClass, gravity_off: T) -> T {
         sensor.stride_scale::<T>().hypot(gravity_off * T::from_f64(Self::SCALE_SHARE))
     }
 
-    /// Takes the next stride.
+    /// Adds the next stride.
     pub fn add(&mut self, stride: &Stride<T>) {
         let [dx, dy, _] = *(stride.position - self.position).as_array();
         let lost = T::from_f64(Self::LOST_HEADING);
@@ -94,9 +95,9 @@ impl<T: Scalar> PathUncertainty<T> {
         self.strides += T::ONE;
     }
 
-    /// Standard deviations of x, y and z (m, earth), after the last stride and until the next.
+    /// The standard deviations of x, y and z (m, earth), after the last stride and until the next.
     pub fn standard_deviation(&self) -> SVector<T, 3> {
-        // A root of a sum by halves: the squares of hundreds of metres leave a fixed-point number's range.
+        // The root of a sum is taken by `hypot`: the squares of hundreds of metres exceed a fixed-point number's range.
         let steps = (self.strides + T::ONE).sqrt();
         let (own, height) = (T::from_f64(Self::FOOTPRINT), T::from_f64(Self::HEIGHT));
         let ([x, y, _], [along, across]) = (*self.position.as_array(), *self.turned.as_array());

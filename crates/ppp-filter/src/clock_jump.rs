@@ -1,27 +1,28 @@
-//! Jumps of all phases against their codes: some receivers keep their clock near GPS time by whole milliseconds, and tell
-//! it to the codes alone, or to the phases.
+//! Jumps of all phases against their codes: some receivers keep their clock near GPS time by whole milliseconds, and
+//! apply the steps to the codes alone, or to the phases alone.
 
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 
-/// A millisecond of light, m.
+/// The distance that light travels in a millisecond, m.
 pub(crate) const MILLISECOND: f64 = SPEED_OF_LIGHT * 1e-3;
-/// What jumps by less is a slip of its own, or an outlier of the code, m; what jumps like others is so near to them.
+/// The smallest clock jump, m: what jumps by less is a slip of its own, or a code outlier. Jumps that agree within this
+/// are alike.
 const SMALLEST: f64 = 15.0;
-/// From fewer satellites nothing is said.
+/// The minimum number of satellites for detecting a jump.
 const FEWEST: usize = 3;
 
-/// A jump of all satellites' phases.
+/// A jump common to the phases of all satellites.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum ClockJump {
-    /// By whole milliseconds.
+    /// A jump by whole milliseconds.
     Milliseconds(i32),
-    /// By anything else, of nearly all: all ambiguities begin anew.
+    /// A jump by any other amount, common to nearly all satellites: all ambiguities are reset.
     Other,
 }
 
 impl ClockJump {
-    /// The jump that most satellites have in common, of `jumps` in m, of which `middle` is the median.
+    /// The jump that most satellites have in common, from `jumps` in m, whose median is `middle`.
     pub(crate) fn of(jumps: &[f64], middle: f64) -> Option<Self> {
         let like = jumps.iter().filter(|&jump| (jump - middle).abs() < SMALLEST).count();
         if middle.abs() < SMALLEST || jumps.len() < FEWEST || 2 * like <= jumps.len() {
@@ -29,13 +30,13 @@ impl ClockJump {
         }
         let milliseconds = libm::round(middle / MILLISECOND);
         let whole = (middle - milliseconds * MILLISECOND).abs() < SMALLEST;
-        // Clocks that are seconds off jump by anything.
+        // A clock that is seconds off may jump by any amount.
         let near = milliseconds.abs() < 1e6;
         if whole && near {
             return Some(Self::Milliseconds(milliseconds as i32));
         }
-        // Outliers of many codes may be alike by chance, and every ambiguity would be lost for them. A real jump stays,
-        // so that the next epoch tells as well.
+        // Outliers of many codes may agree by chance, which would cost every ambiguity. A real jump persists, so that
+        // the next epoch shows it as well.
         (8 * (jumps.len() - like) <= jumps.len()).then_some(Self::Other)
     }
 }

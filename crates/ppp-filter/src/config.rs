@@ -4,7 +4,7 @@ use crate::Estimator;
 use kestirim_gnss_ppp::{SatelliteState, SlipLimits};
 use kestirim_robust_kalman::Robust;
 
-/// Motion of the receiver.
+/// The motion model of the receiver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -18,8 +18,8 @@ pub enum Motion {
     },
 }
 
-/// Standard deviation of an ionosphere-free observation: σ² = a² + b²·cos²E at the elevation E (the
-/// published weighting). The combination is three times as noisy as one carrier.
+/// The standard deviation of an ionosphere-free observation: σ² = a² + b²·cos²E at the elevation E (the published
+/// weighting). The combination is three times as noisy as one carrier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -31,13 +31,13 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// σ² at an elevation of which the sine is given, m².
+    /// The variance σ² at an elevation given by its sine, m².
     pub(crate) fn variance(&self, sine: f64) -> f64 {
         self.zenith * self.zenith + self.slant * self.slant * (1.0 - sine * sine)
     }
 
-    /// σ² where an epoch stands alone, so that nothing averages what low satellites tell, m²: (a² + b²·cot²E)/2, which is as the codes
-    /// of five geodetic receivers are, 0.3 to 0.8 m/sin E.
+    /// The variance σ² of a single epoch's solution, in which nothing averages the errors of low satellites, m²: (a² +
+    /// b²·cot²E)/2, which fits the codes of five geodetic receivers, 0.3 to 0.8 m/sin E.
     pub(crate) fn variance_of_one_epoch(&self, sine: f64) -> f64 {
         let cotangent_squared = 1.0 / (sine * sine) - 1.0;
         0.5 * (self.zenith * self.zenith + self.slant * self.slant * cotangent_squared)
@@ -49,42 +49,44 @@ impl Deviation {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config<R = Robust<f64>> {
-    /// Motion of the receiver. The default `estimator` is made for it: change both.
+    /// The motion model of the receiver. The default `estimator` is made for it: change both together.
     pub motion: Motion,
-    /// Lowest elevation of a satellite, rad.
+    /// The elevation mask, rad: lower satellites are not used.
     pub elevation_mask: f64,
-    /// Noise of the ionosphere-free phase.
+    /// The noise of the ionosphere-free phase.
     pub phase: Deviation,
-    /// Noise of the ionosphere-free code.
+    /// The noise of the ionosphere-free code.
     pub code: Deviation,
-    /// Random walk of satellite clocks between the samples of their product: variance per second,
-    /// m²/s. Between two samples the error is a random walk tied at both ends.
+    /// Random walk of satellite clocks between the samples of their product: variance per second, m²/s. Between two
+    /// samples the error is a random walk tied down at both ends.
     pub clock_walk: f64,
-    /// Standard deviation of the first wet zenith delay, m.
+    /// The initial standard deviation of the wet zenith delay, m.
     pub wet_delay: f64,
-    /// Variance per second by which the wet zenith delay walks, m²/s.
+    /// Random walk of the wet zenith delay: variance per second, m²/s.
     pub wet_delay_walk: f64,
-    /// Standard deviation of the troposphere's horizontal gradients, to the north and to the east, m: of the first ones, and of
-    /// what a day changes. A millimetre is 3 cm at 10° of elevation. Zero: they are not estimated, nor are they where the
-    /// first epoch's clocks are interpolated over more than five minutes, which hides them. They take the room of two satellites.
+    /// The standard deviation of the troposphere's horizontal gradients to the north and to the east, m: their initial
+    /// value, and their change in a day.
+    ///
+    /// A millimetre is 3 cm at 10° of elevation. With zero they are not estimated, nor where the first epoch's clocks
+    /// are interpolated over more than five minutes, which hides them. They take the room of two satellites.
     pub gradient: f64,
-    /// Thresholds of the slip detection.
+    /// The thresholds of cycle slip detection.
     pub slips: SlipLimits,
-    /// For how long the errors of an observation stay alike (multipath, troposphere, orbits), s: the
-    /// covariances that are reported count as one what was observed within.
+    /// The correlation time of an observation's errors (multipath, troposphere, orbits), s: the reported covariances
+    /// count what is observed within it as one observation.
     pub correlation_time: f64,
-    /// Treatment of observations that do not fit.
+    /// How observations that do not fit are treated.
     pub estimator: Estimator<R>,
 }
 
-/// Finite and not negative.
+/// Whether a setting is finite and not negative.
 #[inline(never)] // Asked of each setting.
 fn is_deviation(value: f64) -> bool {
     value >= 0.0 && value.is_finite()
 }
 
 impl<R> Config<R> {
-    /// Whether the filter can work with it.
+    /// Whether all settings are valid.
     pub(crate) fn is_valid(&self) -> bool {
         let motion = match self.motion {
             Motion::Static => 0.0,
@@ -109,7 +111,7 @@ impl<R> Config<R> {
             && settings.iter().take(3).all(|&value| value > 0.0)
     }
 
-    /// Variance that the interpolation of a satellite's clock adds to an observation, m².
+    /// The variance that the interpolation of a satellite's clock adds to an observation, m².
     pub(crate) fn clock_variance(&self, state: &SatelliteState) -> f64 {
         let SatelliteState { clock_interval: interval, clock_distance: distance, .. } = *state;
         if interval > 0.0 {
@@ -119,7 +121,7 @@ impl<R> Config<R> {
         }
     }
 
-    /// The same settings with another treatment of observations that do not fit.
+    /// The settings with another treatment of observations that do not fit.
     #[must_use]
     pub fn with_estimator<S>(self, estimator: Estimator<S>) -> Config<S> {
         let Self { motion, elevation_mask, phase, code, clock_walk, wet_delay, .. } = self;
@@ -141,14 +143,18 @@ impl<R> Config<R> {
 }
 
 impl Config {
-    /// The settings with ephemerides that satellites broadcast, each at its own accuracy ([`SatelliteState::accuracy`]): these stay
-    /// wrong by the same for as long as one serves, up to two hours. Beside that gradients are nothing.
+    /// The settings for broadcast ephemerides, each weighted by its own accuracy ([`SatelliteState::accuracy`]).
+    ///
+    /// The error of an ephemeris stays the same for as long as the ephemeris is in use, up to two hours. Gradients are
+    /// negligible beside it.
     pub fn broadcast(motion: Motion) -> Self {
         Self { correlation_time: 7_200.0, gradient: 0.0, ..Self::new(motion) }
     }
 
-    /// The settings for geodetic receivers with final products of the IGS, which our results are made
-    /// with: the published ones (Table 1), but for the estimator, and slips that a code outlier cannot imitate.
+    /// The settings for geodetic receivers with final products of the IGS, with which our results are made.
+    ///
+    /// They are the published ones (Table 1), except for the estimator, and for slip limits that a code outlier cannot
+    /// imitate.
     pub fn new(motion: Motion) -> Self {
         Self {
             motion,

@@ -3,29 +3,31 @@
 use crate::Contradiction;
 use kestirim_robust_kalman::{Decision, Reason};
 
-/// What remains of an epoch in the sums after the next one: a memory of ten epochs.
+/// The weight of an epoch in the sums decays by this factor per epoch: a memory of ten epochs.
 const KEPT: f64 = 0.9;
-/// Epochs before anything but gross contradictions is judged, and for which a smaller one must last.
+/// The number of epochs before anything but gross contradictions is judged, and for which a smaller contradiction must
+/// last.
 const FIRST: u8 = 10;
-/// Largest share of rejected observations that may last. Clean days stay below 0.05, of the t-test below 0.11.
+/// The largest share of rejected observations that may last. Clean days stay below 0.05, with the t-test below 0.11.
 const LARGEST_SHARE: f64 = 0.10;
-/// Largest share at all: swapped codes pass 0.35.
+/// The largest share of rejected observations at any time: swapped codes exceed 0.35.
 const GROSS_SHARE: f64 = 0.22;
-/// Largest mean of the squared standardised residuals that may last. Those of an epoch are those of the next, as clocks
-/// and troposphere go slowly: a window of ten epochs holds not many more than four independent ones, whose mean is
-/// below 4.6 in 99.9 % of all cases if the noise is as said. Old clocks make it larger: good days pass 6 for some
-/// minutes.
+/// The largest mean of the squared standardised residuals that may last.
+///
+/// Residuals persist from epoch to epoch, as clocks and troposphere vary slowly: a window of ten epochs holds little
+/// more than four independent sets, whose mean is below 4.6 in 99.9 % of all cases if the noise is as configured.
+/// Outdated clocks enlarge it: good days exceed 6 for some minutes.
 const LARGEST_SQUARE: f64 = 7.0;
-/// Largest mean at all.
+/// The largest mean of the squared standardised residuals at any time.
 const GROSS_SQUARE: f64 = 8.0;
-/// Largest mean in the first epochs, of fewer numbers …
+/// The largest mean of the squared standardised residuals in the first epochs, which hold fewer values.
 const FIRST_SQUARE: f64 = 20.0;
-/// … and largest share.
+/// The largest share of rejected observations in the first epochs.
 const FIRST_SHARE: f64 = 0.30;
-/// Largest square of one residual: a single outlier is none of all.
+/// The upper limit on one squared residual, so that a single outlier does not condemn all.
 const LARGEST_SINGLE: f64 = 100.0;
 
-/// Sums over the last epochs, each epoch counted for less than the next.
+/// Sums over the last epochs, in which older epochs count for less.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -34,14 +36,14 @@ pub(crate) struct Consistency {
     judged: f64,
     rejected: f64,
     squares: f64,
-    /// For how many epochs more was rejected than may last …
+    /// The number of consecutive epochs with more rejections than may last.
     rejecting: u8,
-    /// … and residuals were larger.
+    /// The number of consecutive epochs with larger residuals than may last.
     loud: u8,
 }
 
 impl Consistency {
-    /// Takes in what was decided about the observations of an epoch.
+    /// Updates the sums with the decisions about an epoch's observations.
     pub(crate) fn update<'a>(&mut self, decisions: impl Iterator<Item = &'a Decision<f64>>) {
         self.epochs = self.epochs.saturating_add(1);
         for sum in [&mut self.judged, &mut self.rejected, &mut self.squares] {
@@ -63,8 +65,8 @@ impl Consistency {
         self.loud = longer(self.loud, self.exceeds(LARGEST_SQUARE));
     }
 
-    /// Why the observations contradict the solution, or each other: too many are rejected, or what is left is too far
-    /// from the solution.
+    /// The reason why the observations contradict the solution, or each other: too many are rejected, or the accepted
+    /// ones are too far from the solution.
     pub(crate) fn contradiction(&self) -> Option<Contradiction> {
         let begins = self.epochs < FIRST;
         let (share, square) =
@@ -133,7 +135,7 @@ mod tests {
             consistency.update([decision(Reason::Agrees, 1.0); 20].iter());
         }
         assert_eq!(consistency.contradiction(), None);
-        // Without redundancy nothing is judged.
+        // Without redundancy no observation is judged.
         assert_eq!(after(100, &[decision(Reason::NoRedundancy, 0.0); 8]).contradiction(), None);
     }
 }

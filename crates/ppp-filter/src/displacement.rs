@@ -1,55 +1,55 @@
-//! How far a receiver that is said to rest has gone since the epoch before, from its phases alone.
+//! Detection of a displacement since the preceding epoch, from the phases alone, of a receiver that should be at rest.
 
 use crate::least_squares::Step;
 use nalgebra::Vector3;
 
-/// Variance of place and clock before the phases are used, m²: the codes tell both to metres.
+/// The prior variance of place and clock, m²: the codes determine both to metres.
 const UNKNOWN: f64 = 1e6;
-/// Nothing is left out.
+/// Indices for leaving out no change.
 const NONE: [usize; 2] = [usize::MAX; 2];
-/// Fewer satellites do not show, without two of them, whether their changes agree.
+/// The minimum number of satellites: fewer, without two of them, do not show whether their changes agree.
 const FEWEST: usize = 8;
-/// A receiver has moved if it is more than so many standard deviations from where it was. They follow from the noise of its own phases: on
-/// four clean days of three stations none came beyond 6.6.
+/// A receiver has moved if it is more than this many standard deviations from where it was. These follow from the noise
+/// of its own phases: on four clean days of three stations none exceeded 6.6.
 const FARTHEST: f64 = 10.0;
-/// The same by the changes of all satellites but any two.
+/// The number of standard deviations that a displacement must also exceed by the changes of all satellites but any two.
 const STILL_FAR: f64 = 5.0;
-/// Changes whose mean square about a motion is larger, in their variances, are slips. In one epoch noise counts as no more than so
-/// many times what it was.
+/// The largest mean square of the changes about a motion, in their variances: larger ones are slips. The noise of one
+/// epoch counts as no more than this many times the previous noise.
 const MISFIT: f64 = 9.0;
-/// Weight of one epoch in the mean noise.
+/// The weight of one epoch in the mean noise.
 const SHARE: f64 = 0.03;
-/// The noise is never less than this part of the variances said.
+/// The lower limit of the noise, as a share of the assumed variances.
 const LEAST: f64 = 0.02;
 
-/// Tells when a receiver that is said to rest goes elsewhere.
+/// Detects when a receiver that should be at rest moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Displacement {
-    /// Mean square of the changes beside the clock's, in their variances.
+    /// The mean square of the changes apart from that of the clock, in their variances.
     noise: f64,
 }
 
-/// What changed of a satellite since it was last used.
+/// The change of a satellite's phase since it was last used.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Change {
-    /// Unit vector from the receiver to it.
+    /// The unit vector from the receiver to the satellite.
     pub(crate) sight: Vector3<f64>,
-    /// By how much its phase is longer than a receiver at rest would have it, m.
+    /// By how much the phase is longer than it would be for a receiver at rest, m.
     pub(crate) phase: f64,
-    /// The variance of that, m².
+    /// The variance of the change, m².
     pub(crate) variance: f64,
 }
 
 impl Displacement {
     pub(crate) const NEW: Self = Self { noise: 1.0 };
 
-    /// Where the phases' changes since the epoch before take a receiver, m, if that surely is another place, whichever two of
-    /// them are left out: they may have slipped.
+    /// The displacement that explains the phases' changes since the preceding epoch, m, if it is significant whichever
+    /// two satellites are left out, as these may have slipped.
     ///
-    /// Ambiguities do not change from one epoch to the next, nor do delays by much: what all phases change by in common is the clock
-    /// and a motion (time-differenced carrier phases; van Graas and Soloviev 2004).
+    /// Ambiguities do not change from one epoch to the next, and delays hardly: what all phases change by in common is
+    /// due to the clock and a motion (time-differenced carrier phases; van Graas and Soloviev 2004).
     #[inline(never)] // Of receivers at rest, once an epoch.
     pub(crate) fn of(&mut self, changes: &[Change]) -> Option<Vector3<f64>> {
         let count = changes.len();
@@ -60,7 +60,7 @@ impl Displacement {
         let noise = self.noise.max(LEAST);
         let mut seen = unrest / (count - 1) as f64;
         let mut moved = None;
-        // A quick look first: at rest the changes are too small for any motion.
+        // A quick test first: at rest the changes are too small for any motion.
         if unrest > FARTHEST * FARTHEST * noise
             && let Some(all) = Fit::beyond(FARTHEST, changes, NONE, noise)
         {
@@ -70,7 +70,7 @@ impl Displacement {
                 seconds.all(|second| beyond([first, second]).is_some())
             };
             if (0..count).all(is_seen_without) {
-                // What a motion explains is no noise.
+                // Changes that a motion explains are no noise.
                 seen = all.misfit;
                 moved = Some(all.step);
             }
@@ -80,17 +80,17 @@ impl Displacement {
     }
 }
 
-/// All changes but two.
+/// All changes except two.
 fn all_but(changes: &[Change], left_out: [usize; 2]) -> impl Iterator<Item = &Change> {
     let numbered = changes.iter().enumerate();
     numbered.filter(move |(index, _)| !left_out.contains(index)).map(|(_, change)| change)
 }
 
-/// Sum of the squares of all changes but two beside a clock that changed, in their variances.
+/// The sum of the squared changes, except two, about a common clock change, in their variances.
 #[inline(never)] // Wanted at two places, once in flash.
 fn unrest(changes: &[Change], left_out: [usize; 2]) -> f64 {
     let (mut weights, mut sum, mut squares) = (0.0, 0.0, 0.0);
-    // From the first, so that nothing is lost to rounding where a clock leaps far.
+    // Relative to the first, so that no precision is lost where a clock leaps far.
     let origin = changes.first().map_or(0.0, |it| it.phase);
     for change in all_but(changes, left_out) {
         let (weight, phase) = (1.0 / change.variance, change.phase - origin);
@@ -101,17 +101,18 @@ fn unrest(changes: &[Change], left_out: [usize; 2]) -> f64 {
     squares - sum * sum / weights
 }
 
-/// A motion that explains changes.
+/// A motion that explains the changes.
 #[derive(Clone, Copy, Debug)]
 struct Fit {
-    /// Where, m.
+    /// The displacement, m.
     step: Vector3<f64>,
-    /// Mean square of what is left of the changes, in their variances.
+    /// The mean square of the residuals of the changes, in their variances.
     misfit: f64,
 }
 
 impl Fit {
-    /// The motion that fits all changes but two, if it is beyond so many deviations; `noise` is that of the epochs before.
+    /// The motion that fits all changes except two, if it exceeds a number of standard deviations; `noise` is that of
+    /// earlier epochs.
     #[inline(never)] // Wanted at two places, once in flash.
     fn beyond(
         deviations: f64,
@@ -126,7 +127,7 @@ impl Fit {
             count = count.saturating_add(1);
         }
         let misfit = left / f64::from(count.saturating_sub(4));
-        // What it explains beside the clock: its square, in its variances.
+        // The part that the motion explains beyond the clock: its square, in its variances.
         let square = unrest(changes, left_out) - left;
         let is_beyond = square > deviations * deviations * misfit.max(noise) && misfit < MISFIT;
         is_beyond.then_some(Self { step: moved.coordinates(), misfit })
@@ -137,7 +138,7 @@ impl Fit {
 mod tests {
     use super::*;
 
-    /// Nine satellites, whose phases a motion and a clock change, and noise of so many centimetres.
+    /// The changes of nine satellites due to a motion and a clock, with noise of `noise` centimetres.
     fn changes(motion: [f64; 3], noise: f64) -> [Change; 9] {
         let of = |at: usize| {
             let (azimuth, elevation) = (at as f64 * 2.4, 0.3 + 0.13 * at as f64);

@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Reason for which an epoch has no solution. The filter is as it was before the call.
+/// The reason why an epoch has no solution. The filter is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -9,9 +9,9 @@ pub enum Error {
     /// Fewer than four satellites have complete observations, orbits and clocks above the
     /// elevation mask.
     TooFewSatellites,
-    /// The satellites stand so that the codes fix no position.
+    /// The geometry of the satellites is such that the codes determine no position.
     PoorGeometry,
-    /// The epoch is not later than the one before.
+    /// The epoch is not later than the preceding one.
     TimeNotAdvancing,
     /// The iteration of the position does not converge: the observations contradict each other.
     Contradictory,
@@ -37,7 +37,7 @@ impl fmt::Display for Error {
 
 impl core::error::Error for Error {}
 
-/// Errors of the update: rows and blocks are right by construction, so only numbers can be wrong.
+/// Converts errors of the update: rows and blocks are right by construction, so only numbers can be wrong.
 impl From<kestirim_kalman::Error> for Error {
     fn from(_: kestirim_kalman::Error) -> Self {
         Self::NotFinite

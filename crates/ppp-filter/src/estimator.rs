@@ -3,18 +3,19 @@ use kestirim_robust_kalman::{
     Adaptive, Block, Descent, Igg3, NoFactor, Order, Reweighting, Robust, Scale, UnitScale, Weight,
 };
 
-/// The three coordinates among the states.
+/// The block of the three coordinates among the states.
 pub(crate) const POSITION: Block = Block::new(0, 3);
 
-/// Treatment of observations that do not fit.
+/// How observations that do not fit are treated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Estimator<R = Robust<f64>> {
-    /// Weighting of an epoch's observations: chosen at run time, or of fewer choices and less flash ([`Lean`]).
+    /// The weighting of an epoch's observations: chosen at run time, or fixed by type with less flash ([`Lean`]).
     pub robust: R,
-    /// After how many epochs in which its phase was rejected a satellite's ambiguity begins anew. With none,
-    /// phases are not monitored: slips are those that the combinations show by themselves, no noise is estimated.
+    /// The number of epochs with a rejected phase after which a satellite's ambiguity is reset.
+    ///
+    /// With `None`, phases are not monitored: only the combinations reveal slips, and no noise is estimated.
     pub patience: Option<u8>,
 }
 
@@ -24,7 +25,7 @@ impl Estimator {
         Self { robust: Robust::plain(), patience: None }
     }
 
-    /// RKF: IGG III on all observations at once.
+    /// RKF: IGG III applied to all observations at once.
     pub fn igg3() -> Self {
         Self { robust: Robust::igg3(), patience: None }
     }
@@ -34,27 +35,28 @@ impl Estimator {
         Self { robust: Robust::t_test(), patience: None }
     }
 
-    /// IKF: IGG III on the worst observation, repeated.
+    /// IKF: IGG III applied to the worst observation, repeatedly.
     pub fn iterative_igg3() -> Self {
         Self { robust: Robust::iterative_igg3(), patience: None }
     }
 
-    /// The published UKF (uyarlı, adaptive): IKF and an adaptive factor on the position.
+    /// The published UKF (uyarlı, adaptive): IKF with an adaptive factor on the position.
     pub fn adaptive() -> Self {
         Self { robust: Robust::adaptive(POSITION), patience: None }
     }
 
-    /// The default, of our own design: the worst observation first, judged by variances that are
-    /// believed, as any scale that an epoch's residuals give is inflated by the outliers it is to find
-    /// or, where few satellites are in view, shrunk by chance. A phase that jumps and stays away has
-    /// slipped; one that drifts has not.
+    /// The default, of our own design.
     ///
-    /// What may drift is learnt for each satellite: how good its clock is between samples of its product
-    /// and, where the receiver moves, how noisy its phase is. (A receiver at rest averages that noise, and
-    /// needs its low satellites to tell height from troposphere.)
+    /// The worst observation is judged first, by the configured variances, because any scale derived from an epoch's
+    /// residuals is inflated by the very outliers it is to find or, where few satellites are in view, shrunk by chance.
+    /// A phase that jumps and stays away has slipped; one that drifts has not.
     ///
-    /// A receiver that moves is asked first whether its prediction holds: a step that all satellites
-    /// show is motion. Each of its epochs has to find its own outliers, so the thresholds are nearer.
+    /// The amount of drift is learnt for each satellite: how good its clock is between samples of its product and,
+    /// where the receiver moves, how noisy its phase is. (A receiver at rest averages that noise, and needs its low
+    /// satellites to separate height from troposphere.)
+    ///
+    /// For a moving receiver the prediction is tested first: a step that all satellites show is motion. Each of its
+    /// epochs has to find its own outliers, so the thresholds are tighter.
     pub fn guarded(motion: Motion) -> Self {
         let Estimator { robust, patience } = Estimator::at_rest();
         let Robust { weight, reweighting, least_redundancy, .. } = robust;
@@ -78,7 +80,7 @@ impl Estimator {
 }
 
 impl Estimator<Lean> {
-    /// [`Estimator::guarded`] of a receiver at rest, without the code of what else could be chosen at run time.
+    /// [`Estimator::guarded`] for a receiver at rest, without the code of the other run-time choices.
     pub fn at_rest() -> Self {
         let robust = Robust {
             weight: Igg3 { k0: 3.5, k1: 8.0, descent: Descent::Squared },

@@ -3,11 +3,11 @@ use crate::{Config, Error, SatelliteObservation, Solution, Weighting};
 use kestirim_gnss_ppp::{GpsTime, Receiver};
 use kestirim_robust_kalman::Robust;
 
-/// A precise point positioning filter of N states: room for N − 5 satellites at a time, N − 7 with gradients (see
+/// A precise point positioning filter of N states, with room for N − 5 satellites at a time, N − 7 with gradients (see
 /// [`states`](crate::states)).
 ///
-/// It starts by itself from the first epoch's codes. How it weighs observations is chosen at run time by its settings, unless
-/// R is a type that has the choice made ([`Lean`](crate::Lean)) and so takes less flash.
+/// It initialises itself from the first epoch's codes. The weighting of observations is chosen at run time by its
+/// settings, unless R is a type that fixes the choice ([`Lean`](crate::Lean)) and so takes less flash.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PppFilter<const N: usize, R = Robust<f64>> {
@@ -16,7 +16,7 @@ pub struct PppFilter<const N: usize, R = Robust<f64>> {
 }
 
 impl<const N: usize, R> PppFilter<N, R> {
-    /// A filter before its first epoch.
+    /// Creates a filter that awaits its first epoch.
     pub const fn new(config: Config<R>) -> Self {
         const { assert!(N >= crate::states(4), "no position from fewer than four satellites") };
         Self { config, running: None }
@@ -29,10 +29,10 @@ impl<const N: usize, R> PppFilter<N, R> {
 }
 
 impl<const N: usize, R: Weighting> PppFilter<N, R> {
-    /// Takes in an epoch, observed at `time` by the receiver's clock.
+    /// Processes an epoch, observed at `time` by the receiver's clock.
     ///
     /// # Errors
-    /// [`Error`]: why the epoch has no solution. The filter is as it was.
+    /// [`Error`]: why the epoch has no solution. The filter is unchanged.
     pub fn process(
         &mut self,
         time: GpsTime,
@@ -42,11 +42,12 @@ impl<const N: usize, R: Weighting> PppFilter<N, R> {
         self.step(time, 1.0, receiver, observations)
     }
 
-    /// Takes in an epoch that was observed before the one that was taken in last: for a recording that is gone through from
-    /// its end. A satellite's `lock_lost` says then that its lock was lost on the way to the epoch that came after.
+    /// Processes an epoch that precedes the one processed last, to go through a recording from its end.
+    ///
+    /// A satellite's `lock_lost` then means that lock was lost between this epoch and the one that follows it in time.
     ///
     /// # Errors
-    /// [`Error`]: why the epoch has no solution. The filter is as it was.
+    /// [`Error`]: why the epoch has no solution. The filter is unchanged.
     pub fn process_backwards(
         &mut self,
         time: GpsTime,
@@ -56,7 +57,7 @@ impl<const N: usize, R: Weighting> PppFilter<N, R> {
         self.step(time, -1.0, receiver, observations)
     }
 
-    /// `direction` is 1 or −1.
+    /// Processes an epoch in a `direction` of time, 1 or −1.
     fn step(
         &mut self,
         time: GpsTime,

@@ -1,4 +1,4 @@
-//! Whole ambiguities beside the filter, which goes on with its own.
+//! Integer ambiguity resolution beside the filter, which keeps its own float ambiguities.
 
 mod held;
 mod pairs;
@@ -18,42 +18,45 @@ use self::wide_lane::{Candidate, WideLane};
 use crate::running::Running;
 use crate::{Health, PppFilter, SatelliteObservation, Solution};
 
-/// Lowest elevation of a satellite whose ambiguity may be whole, rad (15°): weather and antennas leave up to half a cycle of
-/// lower ones.
+/// The elevation mask of ambiguity resolution, rad (15°): weather and antennas leave errors of up to half a cycle at
+/// lower elevations.
 const ELEVATION_MASK: f64 = 0.262;
-/// Observations of less weight tell nothing.
+/// Observations of less weight are ignored.
 const LEAST_WEIGHT: f64 = 0.5;
-/// With so many pairs held there is a solution.
+/// The minimum number of held pairs for a solution.
 const FEWEST_HELD: usize = 5;
-/// What is held is let go beyond this mean square of what it is off, in variances as they are reported.
+/// The held integers are dropped if the mean square of their misfit, in reported variances, exceeds this.
 const LARGEST_HELD_MISFIT: f64 = 2.0;
-/// Variance with which whole ambiguities are taken in, m².
+/// The variance with which integer ambiguities are applied, m².
 const WHOLE: f64 = 1e-6;
 
-/// A position with whole ambiguities.
+/// A position with integer ambiguities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FixedSolution {
-    /// The marker, ECEF, m.
+    /// The position of the marker, ECEF, m.
     pub position: Vector3<f64>,
-    /// Covariance of the position in east, north, up, m², if the integers are right.
+    /// The covariance of the position in east, north, up, m², if the integers are right.
     pub covariance_enu: Matrix3<f64>,
-    /// How many ambiguities between satellites are whole.
+    /// The number of between-satellite ambiguities that are fixed to integers.
     pub fixed: usize,
-    /// Of the integers that were found last: how much farther the second nearest are, in squares, …
+    /// The ratio test of the integers found last: the squared distance of the second nearest divided by that of the
+    /// nearest.
     pub ratio: f64,
-    /// … and how probable they are, if the filter's covariance is true.
+    /// The success rate of the integers found last: their probability if the filter's covariance is true.
     pub success_rate: f64,
 }
 
-/// Finds whole ambiguities between satellites (PPP-AR): wide lanes from averaged codes and phases, then narrow lanes by LAMBDA,
-/// partial, tested, and held as long as their phases go on. The filter is only read.
+/// Resolves integer ambiguities between satellites (PPP-AR).
 ///
-/// It must see every epoch of one filter. With GPS and Galileo it finds some after ten minutes; with one system alone hardly ever
-/// enough.
+/// Wide lanes come from averaged codes and phases, then narrow lanes by LAMBDA, partially, tested, and held while their
+/// phases are continuous. The filter is only read.
+///
+/// It must see every epoch of one filter. With GPS and Galileo it fixes some ambiguities after ten minutes; with one
+/// system alone hardly ever enough.
 #[derive(Clone, Debug)]
 pub struct AmbiguityFixer<const N: usize> {
-    /// By the state that is their satellite's ambiguity.
+    /// The wide lanes, indexed by the state of their satellite's ambiguity.
     wide_lanes: [Option<WideLane>; N],
     held: Held<N>,
 }
@@ -65,14 +68,15 @@ impl<const N: usize> Default for AmbiguityFixer<N> {
 }
 
 impl<const N: usize> AmbiguityFixer<N> {
-    /// Before the first epoch.
+    /// Creates a fixer that awaits its first epoch.
     pub const fn new() -> Self {
         Self { wide_lanes: [None; N], held: Held::NONE }
     }
 
-    /// The position with whole ambiguities after the filter took in `observations` and gave `solution`; none as long as
-    /// they are not known well enough. `bias` is that of a satellite's phases by its number, if it is known. The receiver's antenna
-    /// must be calibrated.
+    /// The position with integer ambiguities after the filter processed `observations` and returned `solution`; `None`
+    /// while they are not determined well enough.
+    ///
+    /// `bias` gives the phase bias of a satellite by its number, if known. The receiver's antenna must be calibrated.
     pub fn fix<R>(
         &mut self,
         filter: &PppFilter<N, R>,
@@ -118,7 +122,7 @@ impl<const N: usize> AmbiguityFixer<N> {
         })
     }
 
-    /// Averages wide lanes. The satellites of which they are known.
+    /// Averages wide lanes, and returns the satellites whose wide lanes are known.
     fn follow(
         &mut self,
         running: &Running<N>,
@@ -171,7 +175,8 @@ impl<const N: usize> AmbiguityFixer<N> {
     }
 }
 
-/// Takes in what whole ambiguities say. The mean square of what they were off, in variances; none if a number is not finite.
+/// Applies integer ambiguities to an estimate. Returns the mean square of their innovations, in variances; `None` if a
+/// number is not finite.
 fn constrain<const N: usize>(
     estimate: &mut Gaussian<f64, N>,
     pairs: &Vec<(Pair, i64), N>,

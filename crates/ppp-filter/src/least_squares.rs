@@ -1,22 +1,23 @@
-//! Least squares for three coordinates and a clock, from differences of ranges along lines of sight.
+//! Least squares for three coordinates and a clock, from range differences along lines of sight.
 
 use kestirim_kalman::{Covariance, Error, Gaussian, SparseRow};
 use kestirim_scalar::Components;
 use nalgebra::{SVector, Vector3};
 
-/// How far a receiver is from where it was supposed, and its clock from what it was, m.
+/// The corrections to a receiver's assumed position and clock, m.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Step(Gaussian<f64, 4>);
 
 impl Step {
-    /// Nothing is known beyond a variance of each number, m².
+    /// An unknown step with a prior variance of each component, m².
     #[inline(never)] // Wanted at two places, once in flash.
     pub(crate) fn unknown(variance: f64) -> Self {
         Self(Gaussian::new(SVector::zeros(), Covariance::from_variances(&[variance; 4])))
     }
 
-    /// Takes in how much longer than supposed the range along a line of sight is, m. Returns the square of what the earlier ones did not
-    /// predict, in its variance: their sum is that of all residuals.
+    /// Adds a range along a line of sight, which is longer than assumed by `difference`, m.
+    ///
+    /// Returns the squared innovation in its variance: the sum of these is that of all residuals.
     #[inline(never)] // Wanted at two places, once in flash.
     pub(crate) fn take_in(
         &mut self,
@@ -39,12 +40,12 @@ impl Step {
         self.0.mean.w
     }
 
-    /// Length of all four, m.
+    /// The norm of all four components, m.
     pub(crate) fn length(&self) -> f64 {
         self.0.mean.norm()
     }
 
-    /// The largest variance of the four, m².
+    /// The largest variance of the four components, m².
     pub(crate) fn spread(&self) -> f64 {
         self.0.covariance.variances().max()
     }

@@ -1,4 +1,4 @@
-//! One satellite's two observations, linearised.
+//! The linearised code and phase of one satellite.
 
 use crate::collected::collected;
 use crate::states::{CLOCK, COMMON, GRADIENTS, WET};
@@ -7,11 +7,12 @@ use kestirim_gnss_ppp::{Carriers, Constellation, Expected, Site, gradient_mappin
 use kestirim_scalar::Components;
 use nalgebra::{SVector, Vector3};
 
-/// A row of H: the states that a phase depends on, the ambiguity last.
+/// A row of H: the states on which a phase depends, the ambiguity last.
 pub(crate) type Row = heapless::Vec<(usize, f64), { COMMON + GRADIENTS.len() + 2 }>;
 
-/// Variance of the delays of the codes of a system's satellites, each beside the others for good, m²: of GLONASS those of
-/// the receiver, which differ with the channel (inter-frequency biases, up to some metres), of BeiDou those of the satellites.
+/// The variance of the constant, satellite-dependent code delays within a system, m²: for GLONASS those of the
+/// receiver, which differ with the channel (inter-frequency biases, up to some metres), for BeiDou those of the
+/// satellites.
 pub(crate) const fn code_bias(carriers: Carriers) -> f64 {
     match carriers.constellation() {
         Constellation::Gps | Constellation::Galileo => 0.0,
@@ -19,8 +20,8 @@ pub(crate) const fn code_bias(carriers: Carriers) -> f64 {
     }
 }
 
-/// How many times the variance of phases of a system's satellites is that of GPS's: orbits, clocks and antennas of GLONASS and
-/// BeiDou are not known as well (RTKLIB counts the deviations of GLONASS 1.5 times, too).
+/// The phase variance of a system's satellites relative to that of GPS: orbits, clocks and antennas of GLONASS and
+/// BeiDou are less well known (RTKLIB also scales the standard deviations of GLONASS by 1.5).
 const fn phase_doubt(carriers: Carriers) -> f64 {
     match carriers.constellation() {
         Constellation::Gps | Constellation::Galileo => 1.0,
@@ -28,32 +29,33 @@ const fn phase_doubt(carriers: Carriers) -> f64 {
     }
 }
 
-/// One satellite's two observations, linearised.
+/// The linearised code and phase of one satellite.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Line {
     pub(crate) satellite: u8,
-    /// Index of the state that is its ambiguity.
+    /// The index of the satellite's ambiguity state.
     pub(crate) state: usize,
-    /// That of its system's clock beside the receiver's, unless that is one.
+    /// The index of the state of its system's clock offset from the receiver's clock, unless the system defines that
+    /// clock.
     pub(crate) offset: Option<usize>,
     pub(crate) slipped: Option<Slipped>,
-    /// By what the gradients count, if they are estimated.
+    /// The mapping factors of the gradients, if they are estimated.
     pub(crate) gradients: Option<[f64; 2]>,
-    /// Phases without the jumps of the receiver's clock, cycles.
+    /// The phases without jumps of the receiver's clock, cycles.
     phases: [f64; 2],
     pub(crate) expected: Expected,
-    /// Observed less expected with no clock, no wet delay and no ambiguity, m.
+    /// The code minus the expected code with no clock, no wet delay and no ambiguity, m.
     pub(crate) code: f64,
     pub(crate) phase: f64,
     pub(crate) code_variance: f64,
     pub(crate) phase_variance: f64,
     pub(crate) clock_variance: f64,
-    /// By what the phase's own variance is multiplied.
+    /// The factor on the phase's own variance.
     pub(crate) phase_noise: f64,
 }
 
 impl Line {
-    /// A line of which the `phases`, cycles, are those of the observation without the jumps of the receiver's clock.
+    /// Creates a line whose `phases`, cycles, are those of the observation without jumps of the receiver's clock.
     pub(crate) fn new(
         observation: &SatelliteObservation<'_>,
         phases: [f64; 2],
@@ -64,7 +66,7 @@ impl Line {
     ) -> Self {
         let sine = expected.local.z;
         let clock = config.clock_variance(&observation.state);
-        // Of orbit and clock: alike in both.
+        // The error of orbit and clock, common to code and phase.
         let told = observation.state.accuracy * observation.state.accuracy;
         let mut line = Self {
             satellite: observation.satellite,
@@ -88,7 +90,7 @@ impl Line {
         line
     }
 
-    /// The variances of a satellite of which a `noise` is known.
+    /// Applies a satellite's learnt `noise` factor to the variances.
     pub(crate) fn learn(&mut self, noise: f64, motion: Motion) {
         self.clock_variance *= noise;
         if matches!(motion, Motion::Kinematic { .. }) {
@@ -96,7 +98,7 @@ impl Line {
         }
     }
 
-    /// Expects the same observations at another place.
+    /// Linearises the observations at another place.
     pub(crate) fn relinearise(&mut self, observation: &SatelliteObservation<'_>, site: &Site<'_>) {
         let wind_up = Some(self.expected.wind_up_cycles);
         let carriers = observation.carriers;
@@ -115,7 +117,7 @@ impl Line {
         self.phase = observation.carriers.ionosphere_free_phase(self.phases) - range - wind_up;
     }
 
-    /// The row of the phase; that of the code ends before the ambiguity.
+    /// The row of the phase; the row of the code ends before the ambiguity.
     pub(crate) fn row(&self) -> Row {
         let [x, y, z] = *self.expected.sight.as_array();
         let wet = (WET, self.expected.wet_mapping);
@@ -125,8 +127,8 @@ impl Line {
         collected(common.into_iter().chain(gradients).chain(own))
     }
 
-    /// z − h(x⁻) of the code and of the phase, where the line is linearised at a position off by
-    /// `offset` = x⁻ − x.
+    /// The innovations z − h(x⁻) of the code and of the phase, where the line is linearised at a position that differs
+    /// by `offset` = x⁻ − x.
     pub(crate) fn innovations<const N: usize>(
         &self,
         mean: &SVector<f64, N>,

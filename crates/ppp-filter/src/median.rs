@@ -1,4 +1,4 @@
-/// The median, if there are any values. By counting: sorting would bring panics along.
+/// The median, or `None` without values. Found by counting, as sorting would bring in panics.
 #[inline(never)] // Wanted at several places, once in flash.
 pub(crate) fn median(values: &[f64]) -> Option<f64> {
     let middle = values.len() / 2;

@@ -1,39 +1,39 @@
-//! Monitor of the errors of one satellite's phase.
+//! Monitoring of the phase errors of one satellite.
 
 use crate::Motion;
 use crate::line::Line;
 use kestirim_robust_kalman::{Decision, Reason};
 
-/// Over how many epochs the noise is averaged.
+/// The number of epochs over which the noise is averaged.
 const MEMORY: f64 = 30.0;
-/// By how much a clock may be worse or better than it should be, or a moving receiver's phase worse, in
-/// variances.
+/// The limit of the factor by which a clock may be worse or better than expected, or a moving receiver's phase worse,
+/// in variances.
 const LARGEST: f64 = 9.0;
-/// Largest square of a single phase for the noise, in variances: outliers are not noise.
+/// The largest squared residual of a single phase that counts for the noise, in variances: outliers are not noise.
 const LARGEST_SQUARE: f64 = 9.0;
-/// Below this weight a phase counts as rejected.
+/// A phase of at most this weight counts as rejected.
 const LEAST_WEIGHT: f64 = 0.1;
-/// A slip jumps from one epoch to the next, by more than so many standard deviations of a
-/// difference; what grows slowly is a clock or a multipath.
+/// A slip jumps from one epoch to the next by more than this many standard deviations of a difference; what grows
+/// slowly is a clock error or multipath.
 const JUMP: f64 = 3.5;
-/// An ambiguity whose phase contradicts for so many times the patience without a jump begins anew, too.
+/// An ambiguity is also reset without a jump if its phase contradicts for this many times the patience.
 const ENDURANCE: u8 = 10;
 
-/// Errors of one satellite's phase from epoch to epoch.
+/// The phase errors of one satellite from epoch to epoch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PhaseMonitor {
-    /// Variance of its modelled value: of a receiver at rest that of its interpolated clock alone,
-    /// as a caesium clock wanders ten times as far as a rubidium clock; of one that moves, all of it.
+    /// The variance relative to its modelled value: for a receiver at rest only that of the interpolated clock, as a
+    /// caesium clock wanders ten times as far as a rubidium clock; for a moving one the whole variance.
     noise: f64,
-    /// Residual when it was last used, m.
+    /// The residual when the phase was last used, m.
     residual: f64,
-    /// Number of epochs, up to the last one, in which it was rejected.
+    /// The number of consecutive epochs, up to the last one, in which the phase was rejected.
     rejected: u8,
-    /// Whether that began with a jump.
+    /// Whether the rejections began with a jump.
     jumped: bool,
-    /// Whether it was not observed in the last epoch.
+    /// Whether the phase was not observed in the last epoch.
     absent: bool,
 }
 
@@ -41,13 +41,13 @@ impl PhaseMonitor {
     pub(crate) const NEW: Self =
         Self { noise: 1.0, residual: 0.0, rejected: 0, jumped: false, absent: false };
 
-    /// Factor of the variance.
+    /// The factor on the variance.
     pub(crate) fn noise(&self) -> f64 {
         self.noise
     }
 
-    /// Whether the ambiguity must be another one: the phase jumped and stays where it is for
-    /// `patience` epochs.
+    /// Whether the ambiguity must have changed: the phase jumped and has stayed away for `patience` epochs, or
+    /// contradicts for longer without a jump.
     pub(crate) fn contradicts(&self, patience: u8) -> bool {
         let patience = if self.jumped { patience } else { patience.saturating_mul(ENDURANCE) };
         self.rejected > 0 && self.rejected >= patience
@@ -58,23 +58,23 @@ impl PhaseMonitor {
         self.rejected > 0
     }
 
-    /// Residual of the last epoch, m, if it was observed in it and not rejected.
+    /// The residual of the last epoch, m, if the phase was observed in it and not rejected.
     pub(crate) fn residual(&self) -> Option<f64> {
         (self.rejected == 0 && !self.absent).then_some(self.residual)
     }
 
-    /// An epoch has come; until an update tells, it is one without this phase.
+    /// Marks the phase as absent from the new epoch, until it is updated.
     pub(crate) fn miss(&mut self) {
         self.absent = true;
     }
 
-    /// The ambiguity begins anew.
+    /// Resets the monitor for a new ambiguity.
     pub(crate) fn begin(&mut self) {
         *self = Self { noise: self.noise, ..Self::NEW };
     }
 
-    /// Takes in the decision about the phase of an epoch, where the squares of all residuals are `common`
-    /// times too large.
+    /// Updates the monitor with the decision about the phase in an epoch in which the squares of all residuals are
+    /// `common` times too large.
     pub(crate) fn update(
         &mut self,
         phase: &Decision<f64>,
@@ -106,7 +106,7 @@ impl PhaseMonitor {
     }
 }
 
-/// Whether a phase was judged by the others.
+/// Whether a phase was judged against the other observations.
 pub(crate) fn is_judged(phase: &Decision<f64>) -> bool {
     !matches!(phase.reason, Reason::NoRedundancy | Reason::TooFew)
 }

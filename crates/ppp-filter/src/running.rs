@@ -1,4 +1,4 @@
-//! A filter that has a position.
+//! The running filter, which has a position.
 
 mod satellites;
 
@@ -21,45 +21,47 @@ use kestirim_robust_kalman::{Decision, Measurement};
 use kestirim_scalar::Components;
 use nalgebra::{SVector, Vector3};
 
-/// Variance of a coordinate from codes, m².
+/// The initial variance of a coordinate from codes, m².
 const START_VARIANCE: f64 = 1e4;
-/// Variance of the receiver's clock, of which each epoch knows nothing but its codes, m².
+/// The variance of the receiver's clock, m², about which each epoch knows nothing but its codes.
 const CLOCK_VARIANCE: f64 = 1e6;
-/// Variance per second by which the clock of another system walks beside that of GPS, m²/s: the receiver's delays are steady,
-/// the times of the products are not always.
+/// Random walk of the clock offset of another system from GPS: variance per second, m²/s. The receiver's delays are
+/// steady, the times of the products not always.
 const OFFSET_WALK: f64 = 1e-8;
-/// Variance of an ambiguity from one epoch's code, m².
+/// The initial variance of an ambiguity from one epoch's code, m².
 const AMBIGUITY_VARIANCE: f64 = 1e4;
-/// In this time gradients change by as much as they are, s.
+/// The time in which gradients change by as much as their standard deviation, s.
 const DAY: f64 = 86_400.0;
-/// Wet zenith delay of a temperate climate, m.
+/// The initial wet zenith delay, m: that of a temperate climate.
 const WET_DELAY: f64 = 0.1;
-/// A receiver that was found farther than this from where the model was linearised is looked at
-/// again from there, m: at 20 000 km, 100 m are worth 0.2 mm.
+/// The model is linearised again if a receiver is found farther than this from where it was linearised, m: at 20 000
+/// km, 100 m are worth 0.2 mm.
 const LINEAR: f64 = 100.0;
-/// Largest number of relinearisations of an epoch.
+/// The largest number of relinearisations in an epoch.
 const RELINEARISATIONS: usize = 5;
-/// The model is one of the ground: what is found elsewhere is none, distances from the Earth's centre, m.
+/// The distances from the Earth's centre at which the model is valid, m: it is one for receivers near the ground.
 pub(crate) const GROUND: core::ops::Range<f64> = 6.3e6..6.5e6;
 
-/// The fastest that the direction to a satellite turns, rad/s: one of GLONASS, overhead.
+/// The fastest rate at which the direction to a satellite turns, rad/s: that of GLONASS, overhead.
 const SKY_TURNS: f64 = 2e-4;
-/// A receiver that was seen to move gets so many times its step as standard deviation, so that the old place hardly pulls it back.
+/// The standard deviation given to a receiver that was seen to move, in lengths of its step, so that the old place
+/// hardly pulls it back.
 const ANYWHERE: f64 = 5.0;
-/// Phases of epochs that are farther apart, in the shortest time between two, are not compared: delays change, too.
+/// Phases are not compared between epochs farther apart than this many times the shortest interval, as delays change,
+/// too.
 const FARTHEST_APART: f64 = 1.5;
 
-/// Median of the squares of standard normal numbers.
+/// The median of the squares of standard normal numbers.
 const MEDIAN_OF_SQUARES: f64 = 0.455;
 
-/// Observations of an epoch that are used.
+/// The observations of an epoch that are used.
 pub(crate) type Lines<'a, 'b, const N: usize> = Vec<(&'a SatelliteObservation<'b>, Line), N>;
-/// Decisions about each line's code and phase.
+/// The decisions about each line's code and phase.
 pub(crate) type Decisions<const N: usize> = Vec<[Decision<f64>; 2], N>;
 
-/// Number of the systems beside GPS.
+/// The number of systems besides GPS.
 const OTHERS: usize = Constellation::ALL.len() - 1;
-/// The states that are clocks beside that of GPS, in the order of [`Constellation::ALL`] behind GPS.
+/// The states of the clock offsets from GPS, in the order of [`Constellation::ALL`] after GPS.
 type Offsets = [Option<usize>; OTHERS];
 
 #[derive(Clone, Copy, Debug)]
@@ -69,26 +71,26 @@ pub(crate) struct Running<const N: usize> {
     pub(crate) time: GpsTime,
     /// The shortest time between two epochs so far, s.
     pub(crate) interval: Option<f64>,
-    /// The first state that may be an ambiguity: those of gradients come before, if they are estimated.
+    /// The first state that may be an ambiguity: those of gradients precede it, if they are estimated.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "first_ambiguity"))]
     first: usize,
-    /// By the state that is their ambiguity.
+    /// The channels, indexed by the state of their ambiguity.
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     channels: [Option<Channel>; N],
-    /// The states that are the clocks of other systems beside that of GPS, all as the receiver has them, each from the first
+    /// The states of the clock offsets of other systems from GPS, as the receiver sees them, each from the first
     /// satellite of that system on.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "offsets::<_, N>"))]
     offsets: Offsets,
     pub(crate) consistency: Consistency,
     pub(crate) rest: Rest,
     displacement: Displacement,
-    /// By how many milliseconds the phases are ahead of the codes since the beginning.
+    /// The milliseconds by which the phases are ahead of the codes since the beginning.
     ahead: i32,
-    /// The jump of the present epoch.
+    /// The clock jump in the current epoch.
     pub(crate) jump: Option<ClockJump>,
 }
 
-/// Behind the common states, or behind the gradients.
+/// Deserialises the first ambiguity state: after the common states, or after the gradients.
 #[cfg(feature = "serde")]
 fn first_ambiguity<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> {
     match <usize as serde::Deserialize>::deserialize(deserializer)? {
@@ -97,7 +99,7 @@ fn first_ambiguity<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<
     }
 }
 
-/// States that there are, or none.
+/// Deserialises the states of clock offsets, all of which must exist.
 #[cfg(feature = "serde")]
 fn offsets<'de, D: serde::Deserializer<'de>, const N: usize>(
     deserializer: D,
@@ -111,7 +113,7 @@ fn offsets<'de, D: serde::Deserializer<'de>, const N: usize>(
 }
 
 impl<const N: usize> Running<N> {
-    /// Starts at the position of the codes of an epoch's `observations`.
+    /// Starts at the position that the codes of an epoch's `observations` give.
     pub(crate) fn start(
         time: GpsTime,
         observations: &[SatelliteObservation<'_>],
@@ -154,7 +156,7 @@ impl<const N: usize> Running<N> {
         })
     }
 
-    /// Predicts to the time of an epoch, which comes later (`direction` 1) or earlier (−1).
+    /// Predicts to the time of an epoch, which is later (`direction` 1) or earlier (−1).
     pub(crate) fn advance(
         &mut self,
         time: GpsTime,
@@ -186,7 +188,7 @@ impl<const N: usize> Running<N> {
         Ok(())
     }
 
-    /// Takes in the observations of the present time.
+    /// Processes the observations of the current time.
     pub(crate) fn observe(
         &mut self,
         receiver: &Receiver<'_>,
@@ -221,13 +223,13 @@ impl<const N: usize> Running<N> {
         Ok(self.solution(&site, &lines, &decisions, config))
     }
 
-    /// If the phases show that a receiver that is said to rest has moved, lets it be elsewhere. The ambiguities are kept: they tell where
-    /// it is now.
+    /// Releases the position if the phases show that a receiver that should be at rest has moved. The ambiguities are
+    /// kept: they determine where it is now.
     fn follow_displacement(&mut self, lines: &Lines<'_, '_, N>) -> Result<(), Error> {
         if self.interval.is_none_or(|it| self.rest.elapsed() > FARTHEST_APART * it) {
             return Ok(());
         }
-        // While a place is not known, the sky that turns changes phases, too.
+        // While the place is uncertain, the turning sky changes phases, too.
         let turned = self.deviation() * SKY_TURNS * self.rest.elapsed();
         let change = |line: &Line| {
             let before = self.channels.get(line.state)?.as_ref()?.monitor.residual()?;
@@ -248,16 +250,16 @@ impl<const N: usize> Running<N> {
         Ok(())
     }
 
-    /// Begins the receiver's clock anew at the median code, and those of systems beside it that were not `known`.
+    /// Resets the receiver's clock to the median code, and the clock offsets of systems that were not `known`.
     #[inline(never)]
     fn set_clocks(&mut self, lines: &Lines<'_, '_, N>, known: Offsets) -> Result<(), Error> {
         let mut clock = median_code(lines, None);
-        // Without GPS the clock is that of a system beside it, best of one that is known.
+        // Without GPS the clock follows from another system and its offset, preferably a known one.
         for begins in [false, true] {
             for (place, (state, known)) in self.offsets.into_iter().zip(known).enumerate() {
                 let Some(state) = state.filter(|_| known.is_none() == begins) else { continue };
                 let Some(code) = median_code(lines, Some(state)) else {
-                    // There was no room for an ambiguity of its first satellite.
+                    // There was no room for the ambiguity of the system's first satellite.
                     if let (true, Some(offset)) = (begins, self.offsets.get_mut(place)) {
                         *offset = None;
                     }
@@ -274,8 +276,7 @@ impl<const N: usize> Running<N> {
         Ok(self.estimate.reset_at(CLOCK, clock, CLOCK_VARIANCE)?)
     }
 
-    /// Updates with the lines, and again from nearer the solution if that was far from where they
-    /// were linearised.
+    /// Updates with the lines, and again after relinearisation if the solution is far from where they were linearised.
     fn settle<'r>(
         &mut self,
         receiver: &Receiver<'r>,
@@ -309,7 +310,7 @@ impl<const N: usize> Running<N> {
         Err(Error::Contradictory)
     }
 
-    /// One update with all lines; `offset` is from where they are linearised to the prediction.
+    /// Updates once with all lines; `offset` leads from where they are linearised to the prediction.
     fn update(
         &mut self,
         lines: &Lines<'_, '_, N>,
@@ -339,7 +340,7 @@ impl<const N: usize> Running<N> {
         Ok(())
     }
 
-    /// Updates the phases' monitors. An error common to all phases is no noise of any one.
+    /// Updates the phase monitors. An error common to all phases is not the noise of any one.
     fn monitor(
         &mut self,
         lines: &Lines<'_, '_, N>,
@@ -358,7 +359,7 @@ impl<const N: usize> Running<N> {
         }
     }
 
-    /// Standard deviation of the position as the filter takes it, m.
+    /// The standard deviation of the position according to the filter, m.
     fn deviation(&self) -> f64 {
         let variance = |axis| self.estimate.covariance.get(axis, axis).unwrap_or(0.0);
         libm::sqrt((0..3).map(variance).sum())
@@ -368,7 +369,7 @@ impl<const N: usize> Running<N> {
         self.first == BEHIND_GRADIENTS
     }
 
-    /// To the north and to the east, m; zero if they are not estimated.
+    /// The gradients to the north and to the east, m; zero if they are not estimated.
     pub(crate) fn gradients(&self) -> [f64; 2] {
         if self.has_gradients() { GRADIENTS.map(|state| self.state(state)) } else { [0.0; 2] }
     }
@@ -382,7 +383,7 @@ impl<const N: usize> Running<N> {
     }
 }
 
-/// The median code of the satellites of a system, by the state of its clock beside that of GPS, if there are any.
+/// The median code of the satellites of a system, given by the state of its clock offset, if there are any.
 #[inline(never)]
 fn median_code<const N: usize>(lines: &Lines<'_, '_, N>, state: Option<usize>) -> Option<f64> {
     let of_system = lines.iter().map(|(_, line)| line).filter(|it| it.offset == state);

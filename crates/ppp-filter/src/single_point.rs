@@ -1,4 +1,4 @@
-//! Positions from the codes of one epoch each.
+//! Single-epoch positions from codes.
 
 use crate::collected::collected;
 use crate::consistency::Consistency;
@@ -17,44 +17,44 @@ use kestirim_robust_kalman::{Decision, Measurement, Robust};
 use kestirim_scalar::Components;
 use nalgebra::{Matrix3, SVector, Vector3};
 
-/// Variance of what is not known beforehand, m²: the first position is good to metres.
+/// The prior variance of unknowns, m²: the first position is good to metres.
 const UNKNOWN: f64 = 1e10;
-/// Wet zenith delay of a temperate climate, m.
+/// The assumed wet zenith delay, m: that of a temperate climate.
 const WET_DELAY: f64 = 0.1;
-/// A carrier alone is so many times less noisy than the combination of two.
+/// The noise of a single carrier relative to that of the combination of two.
 const ALONE: f64 = 1.0 / 3.0;
-/// What of the ionosphere's broadcast delay is left, as a share (IS-GPS-200, 20.3.3.5.2.5).
+/// The share of the ionospheric delay that remains after the broadcast correction (IS-GPS-200, 20.3.3.5.2.5).
 const LEFT: f64 = 0.5;
-/// Standard deviation of the ionosphere where nothing of it is broadcast: L1 at the zenith, m.
+/// The standard deviation of the ionospheric delay without a broadcast model, m: of L1 at the zenith.
 const NOT_TOLD: f64 = 5.0;
-/// The lowest sine of an elevation by which delays and weights are mapped.
+/// The lower limit of the sine of the elevation in mapping delays and weights.
 const LOWEST: f64 = 0.1;
-/// Least squares are done again from where they led.
+/// The number of rounds of least squares, each from where the preceding one led.
 const ROUNDS: usize = 2;
-/// Coordinates and the receiver's clock.
+/// The number of common states: the coordinates and the receiver's clock.
 const COMMON: usize = 4;
-/// The same, and the clocks of systems beside the receiver's.
+/// The number of all states: the common ones and the clock offsets of further systems.
 const STATES: usize = COMMON + Constellation::ALL.len() - 1;
 
 /// The codes of one satellite in an epoch, and the satellite's state.
 #[derive(Clone, Copy, Debug)]
 pub struct CodeObservation<'a> {
-    /// Number of the satellite, which no other has.
+    /// The satellite's number, unique among all systems.
     pub satellite: u8,
-    /// The carriers on which it is observed.
+    /// The carriers on which the satellite is observed.
     pub carriers: Carriers,
-    /// Codes on both, m: the first alone serves, too.
+    /// The codes on both carriers, m: the first alone is enough.
     pub code: [Option<f64>; 2],
-    /// By what the satellite's clock is ahead of that of the first carrier alone, s.
+    /// By how much the satellite's clock is ahead of that of the first carrier alone, s.
     pub group_delay: f64,
     /// The satellite's state at the time of transmission.
     pub state: SatelliteState,
-    /// Its antenna on both carriers, where known: states of precise orbits are those of centres of mass.
+    /// The satellite's antenna on both carriers, where known: states from precise orbits are those of centres of mass.
     pub antenna: Option<[Pattern<'a>; 2]>,
 }
 
 impl<'a> CodeObservation<'a> {
-    /// The same as an observation of which both codes are free of the ionosphere, or alike.
+    /// An equivalent observation with two equal codes, free of the ionosphere or of the first carrier alone.
     fn whole(&self) -> Option<SatelliteObservation<'a>> {
         let (range, _) = self.range()?;
         Some(SatelliteObservation {
@@ -68,7 +68,7 @@ impl<'a> CodeObservation<'a> {
         })
     }
 
-    /// The code free of the ionosphere, or that of the first carrier alone, and whether it is alone.
+    /// The ionosphere-free code, or that of the first carrier alone, and whether it is alone.
     fn range(&self) -> Option<(f64, bool)> {
         match self.code {
             [Some(first), Some(second)] => {
@@ -80,10 +80,12 @@ impl<'a> CodeObservation<'a> {
     }
 }
 
-/// The position of an epoch from its codes alone: free of the ionosphere where there are two, else with `ionosphere`. Outliers
-/// lose weight as in the filter of the same settings; a code's variance is (a² + b²·cot²E)/2 of `config.code`, as nothing averages what low
-/// satellites tell; the covariance grows with the residuals of the others. No phase is
-/// used, and nothing of any other epoch.
+/// The position of an epoch from its codes alone: free of the ionosphere where there are two, otherwise corrected with
+/// `ionosphere`.
+///
+/// Outliers lose weight as in the filter with the same settings. A code's variance is (a² + b²·cot²E)/2 of
+/// `config.code`, as nothing averages the errors of low satellites; the covariance grows with the residuals of the
+/// other codes. No phase is used, and nothing of any other epoch.
 ///
 /// # Errors
 /// [`Error`]: why there is no position.
@@ -109,19 +111,19 @@ pub fn single_point<const N: usize>(
     Ok(found.solution(time, position))
 }
 
-/// One satellite's code, linearised.
+/// The linearised code of one satellite.
 #[derive(Clone, Copy, Debug)]
 struct Line {
     satellite: u8,
     system: Constellation,
     expected: Expected,
-    /// Observed less expected, m.
+    /// Observed minus expected, m.
     innovation: f64,
     variance: f64,
     row: [(usize, f64); COMMON + 1],
 }
 
-/// An epoch, linearised at a position.
+/// An epoch linearised at a position.
 struct Epoch<const N: usize> {
     place: Vector3<f64>,
     clock: f64,
@@ -148,7 +150,7 @@ impl<const N: usize> Epoch<N> {
         let site = Site::new(receiver, &self.place, time);
         let place = Geodetic::from_ecef(&self.place);
         let system = |it: &CodeObservation<'_>| it.carriers.constellation();
-        // To the clock of the first system the others are beside.
+        // The clocks of further systems are offsets from that of the first system.
         let is_there = |of: &Constellation| codes.iter().any(|it| system(it) == *of);
         let there: Vec<_, { Constellation::ALL.len() }> =
             collected(Constellation::ALL.into_iter().filter(is_there));
@@ -160,13 +162,13 @@ impl<const N: usize> Epoch<N> {
             let (range, is_alone) = it.range()?;
             let expected = site.expect(&it.state, it.carriers, it.antenna.as_ref(), None)?;
             let direction = expected.direction;
-            // So that one which is not a number is not above it.
+            // Phrased so that NaN is not above the mask.
             let above = direction.elevation >= config.elevation_mask;
             if !above {
                 return None;
             }
             let sine = expected.local.z;
-            // Both are told of L1.
+            // Both delays are given for L1.
             let ratio = FREQUENCY[0] / it.carriers.frequency()[0];
             let (delay, left) = match (is_alone, ionosphere) {
                 (false, _) => (0.0, 0.0),
@@ -210,14 +212,14 @@ impl<const N: usize> Epoch<N> {
         Ok(())
     }
 
-    /// How many numbers the lines are to tell: coordinates, and the clock of each of their systems.
+    /// The number of unknowns that the lines determine: coordinates, and the clock of each of their systems.
     fn unknowns(&self) -> usize {
         let is_heard = |of: &Constellation| self.lines.iter().any(|line| line.system == *of);
         3 + Constellation::ALL.iter().filter(|of| is_heard(of)).count().max(1)
     }
 
-    /// The variance factor of the codes that were used, at least 1: receivers may be noisier than is said of codes, and what is around
-    /// them may reflect.
+    /// The variance factor of the codes that were used, at least 1: receivers may be noisier than configured, and their
+    /// surroundings may reflect.
     fn variance_factor(&self) -> f64 {
         let used = || self.lines.iter().zip(&self.decisions).filter(|(_, it)| it.weight > 0.0);
         let squares = used().map(|(line, it)| it.weight * square(it.residual) / line.variance);
@@ -249,7 +251,7 @@ impl<const N: usize> Epoch<N> {
             clock: self.clock + estimate.mean.as_array().get(3).copied().unwrap_or(0.0),
             wet_delay: WET_DELAY,
             gradients: [0.0; 2],
-            // Metres, whatever comes: no ambiguity is ever known.
+            // The accuracy is always metres: no ambiguity is ever known.
             health: if let Some(contradiction) = consistency.contradiction() {
                 Health::Contradicted(contradiction)
             } else if heard > self.unknowns() + 1 {

@@ -1,4 +1,4 @@
-//! The first position, from the codes alone.
+//! The initial position, from the codes alone.
 
 use crate::least_squares::Step;
 use crate::{Error, SatelliteObservation};
@@ -6,34 +6,34 @@ use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_gnss_ppp::{Constellation, eccentricity_clock, sagnac};
 use nalgebra::Vector3;
 
-/// Position and receiver clock from one epoch's codes.
+/// The position and receiver clock from one epoch's codes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CodePosition {
-    /// ECEF, m.
+    /// The position, ECEF, m.
     pub(crate) position: Vector3<f64>,
     /// Receiver clock minus GPS time, m.
     pub(crate) clock: f64,
 }
 
 const ITERATIONS: usize = 12;
-/// Variance of what is not known at all, m²: the Earth's radius is 6e6 m.
+/// The prior variance of entirely unknown quantities, m²: the Earth's radius is 6e6 m.
 const UNKNOWN: f64 = 1e15;
-/// Once a step is shorter than this, m, the next one will be, too: a prior of this deviation loses
-/// less to rounding.
+/// Once a step is shorter than this, m, the next one will be, too: a prior with this standard deviation loses less to
+/// rounding.
 const NEAR: f64 = 1e5;
-/// A variance, in those of one code, beyond which the satellites fix nothing.
+/// The variance, relative to that of one code, beyond which the geometry determines nothing.
 const POOR: f64 = 1e6;
-/// A code whose residual is beyond this is dropped from the start, m: an unmodelled troposphere is
-/// not, an outlier that would move the linearisation is.
+/// A code whose residual exceeds this is not used for the start, m: the residual of an unmodelled troposphere does not,
+/// that of an outlier that would move the linearisation does.
 const LARGEST_RESIDUAL: f64 = 15.0;
 
-/// Least squares on the ionosphere-free codes, begun at the Earth's centre; the worst code is
-/// dropped while its residual is not believable and five others remain.
+/// Solves for the position by least squares on the ionosphere-free codes, begun at the Earth's centre. The worst code
+/// is dropped while its residual is implausible and five others remain.
 pub(crate) fn code_position(
     observations: &[SatelliteObservation<'_>],
 ) -> Result<CodePosition, Error> {
     let observations = observations.get(..64).unwrap_or(observations);
-    // A satellite that is there twice counts once; from no place are more than 64 seen.
+    // A satellite that is listed twice counts once; no more than 64 are visible from any place.
     let mut dropped = 0_u64;
     for (index, observation) in observations.iter().enumerate() {
         let before = observations.get(..index).unwrap_or(&[]);
@@ -41,7 +41,7 @@ pub(crate) fn code_position(
             dropped |= 1 << index;
         }
     }
-    // Each system has a clock of its own: the codes of one of them tell the place.
+    // Each system has a clock of its own: the codes of one system determine the place.
     let system = |it: &SatelliteObservation<'_>| it.carriers.constellation();
     let mut counts = Constellation::ALL.map(|of| (of, 0));
     for observation in observations {
@@ -49,7 +49,7 @@ pub(crate) fn code_position(
             *count += 1;
         }
     }
-    // Of as many the first.
+    // Of equal counts the first.
     let (most, count) = counts
         .into_iter()
         .fold((Constellation::Gps, 0), |most, it| if it.1 > most.1 { it } else { most });
@@ -108,19 +108,19 @@ fn least_squares(
     Err(Error::PoorGeometry)
 }
 
-/// Observed less computed, m, and the unit vector from the receiver to the satellite.
+/// Observed minus computed, m, and the unit vector from the receiver to the satellite.
 fn compare(
     observation: &SatelliteObservation<'_>,
     solution: &CodePosition,
 ) -> Option<(f64, Vector3<f64>)> {
-    /// Zenith delay of the troposphere that is not known yet, m.
+    /// The zenith delay of the troposphere while it is unknown, m.
     const ZENITH_DELAY: f64 = 2.4;
     let state = &observation.state;
     let line = state.position - solution.position;
     let distance = line.norm();
     let sight = line / distance;
     let clock = state.clock + eccentricity_clock(&state.position, &state.velocity);
-    // On the way from the Earth's centre, there is no up yet.
+    // On the way from the Earth's centre there is no vertical yet.
     let radius = solution.position.norm();
     let troposphere = if (6.3e6..6.5e6).contains(&radius) {
         ZENITH_DELAY / (sight.dot(&solution.position) / radius).max(0.1)

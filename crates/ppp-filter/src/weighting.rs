@@ -4,9 +4,9 @@ use kestirim_robust_kalman::{
     WeightFunction,
 };
 
-/// How the observations of an epoch are weighted: any [`Robust`] update, its parts chosen at run time or as types.
+/// The weighting of an epoch's observations: any [`Robust`] update, its parts chosen at run time or as types.
 pub trait Weighting {
-    /// Takes the measurements of an epoch into a predicted estimate, with a decision about each.
+    /// Updates a predicted estimate with the measurements of an epoch, with a decision about each.
     ///
     /// # Errors
     /// Those of [`Robust::update`]; the estimate is untouched.
@@ -31,5 +31,6 @@ impl<W: WeightFunction<f64>, S: AnyScale<f64>, A: AnyFactor<f64>> Weighting
     }
 }
 
-/// IGG III with believed variances and no adaptive factor, all of them types: what else [`Robust`] can do takes no flash.
+/// IGG III with the configured variances and no adaptive factor, all of them types: the other choices of [`Robust`]
+/// take no flash.
 pub type Lean = Robust<f64, Igg3<f64>, UnitScale, NoFactor>;

@@ -1,4 +1,4 @@
-//! Arrays in and out.
+//! Conversion of arrays to and from Python.
 
 use kestirim_health::{Health, State};
 use kestirim_replay::{Finding, ScalarKind};
@@ -10,21 +10,21 @@ use pyo3::types::{PyDict, PyTuple};
 
 use crate::error::{KestirimError, unknown};
 
-/// (n,)
+/// An array of shape (n,).
 pub(crate) type Line<'py> = PyReadonlyArray1<'py, f64>;
-/// (n,) of integers
+/// An array of integers of shape (n,).
 pub(crate) type Counts<'py> = PyReadonlyArray1<'py, i64>;
-/// (n, k)
+/// An array of shape (n, k).
 pub(crate) type Table<'py> = PyReadonlyArray2<'py, f64>;
 
-/// The numbers of an array in the order of its rows; the package has made it contiguous and of this shape.
+/// The numbers of an array, row by row; the package has made it contiguous and of this shape.
 pub(crate) fn values<'a, T: Element, D: numpy::ndarray::Dimension>(
     array: &'a numpy::PyReadonlyArray<'_, T, D>,
 ) -> PyResult<&'a [T]> {
     array.as_slice().map_err(|_| KestirimError::new_err("expected a contiguous array"))
 }
 
-/// The same as rows of a length that is known.
+/// The rows of an array, whose length is known at compile time.
 pub(crate) fn rows<'a, const K: usize>(array: &'a Table<'_>) -> PyResult<&'a [[f64; K]]> {
     match values(array)?.as_chunks() {
         (rows, []) => Ok(rows),
@@ -32,7 +32,7 @@ pub(crate) fn rows<'a, const K: usize>(array: &'a Table<'_>) -> PyResult<&'a [[f
     }
 }
 
-/// Results by name, as they come.
+/// Results by name, in the order in which they are added.
 pub(crate) struct Results<'py>(Bound<'py, PyDict>);
 
 impl<'py> Results<'py> {
@@ -45,20 +45,20 @@ impl<'py> Results<'py> {
         Ok(self)
     }
 
-    /// An array (n,), which takes the memory over.
+    /// Adds an array of shape (n,), without a copy.
     pub(crate) fn line<T: Element>(self, name: &str, values: Vec<T>) -> PyResult<Self> {
         let array = values.into_pyarray(self.0.py());
         self.with(name, array)
     }
 
-    /// An array (n, K), which takes the memory over.
+    /// Adds an array of shape (n, K), without a copy.
     pub(crate) fn table<const K: usize>(self, name: &str, rows: Vec<[f64; K]>) -> PyResult<Self> {
         let count = rows.len();
         let array = rows.into_flattened().into_pyarray(self.0.py()).reshape([count, K])?;
         self.with(name, array)
     }
 
-    /// An array of any shape, which takes the memory over.
+    /// Adds an array of any shape, without a copy.
     pub(crate) fn shaped<const D: usize>(
         self,
         name: &str,
@@ -73,7 +73,7 @@ impl<'py> Results<'py> {
         self.with(name, array)
     }
 
-    /// Words, as a tuple.
+    /// Adds a tuple of words.
     pub(crate) fn words(
         self,
         name: &str,
@@ -89,7 +89,7 @@ impl<'py> Results<'py> {
     }
 }
 
-/// A number type by name.
+/// The number type with this name.
 pub(crate) fn scalar(name: &str) -> PyResult<ScalarKind> {
     let known = ScalarKind::ALL.into_iter().find(|kind| kind.name() == name);
     known.ok_or_else(|| unknown("scalar", name, "'f32', 'f64' or 'fixed'"))
@@ -99,12 +99,12 @@ pub(crate) fn doubles<T: Scalar, const K: usize>(vector: &SVector<T, K>) -> [f64
     vector.as_array().map(T::to_f64)
 }
 
-/// Seconds in microseconds, as logs are read.
+/// Converts seconds to microseconds, as the readers of logs do.
 pub(crate) fn microseconds(seconds: f64) -> i64 {
     (seconds * 1e6).round() as i64
 }
 
-/// 0 good, 1 degraded, 2 bad.
+/// The code of a state: 0 good, 1 degraded, 2 bad.
 pub(crate) const fn code(state: State) -> u8 {
     match state {
         State::Good => 0,
@@ -113,12 +113,12 @@ pub(crate) const fn code(state: State) -> u8 {
     }
 }
 
-/// Sentences about what harms every estimate of a log.
+/// Sentences about findings that impair every estimate of a log.
 pub(crate) fn sentences(findings: &[Finding]) -> Vec<String> {
     findings.iter().filter(|finding| finding.is_fault()).map(Finding::sentence).collect()
 }
 
-/// The words for what speaks against an estimate.
+/// The words for the reasons against an estimate.
 pub(crate) fn reasons(health: Health) -> Vec<&'static str> {
     health.reasons().map(kestirim_health::Reason::words).collect()
 }

@@ -1,4 +1,4 @@
-//! Where the user of a drone is, from path losses or levels alone.
+//! The position of a drone's user, from path losses or levels alone.
 
 use kestirim_health::Reason;
 use kestirim_replay::Finding;
@@ -12,10 +12,11 @@ use pyo3::types::PyDict;
 use crate::arrays::{Line, Results, Table, code, microseconds, reasons, rows, sentences, values};
 use crate::error::{KestirimError, refused, unknown};
 
-/// Stack of a thread that estimates: lattices of thousands of points are moved about before they lie on the heap.
+/// The stack size of a thread that estimates, bytes: lattices of thousands of points are moved on the stack before they
+/// are on the heap.
 const STACK_BYTES: usize = 16 << 20;
 
-/// Frequencies of transmitters, Hz.
+/// The range of transmitter frequencies, Hz.
 const LOWEST_HZ: f64 = 30e6;
 const HIGHEST_HZ: f64 = 30e9;
 
@@ -99,10 +100,10 @@ fn polygon(corners: &[[f64; 2]]) -> PyResult<Box<Area>> {
     })
 }
 
-/// Time, place, height, and what was measured.
+/// A measurement: time, position, height, and the measured value.
 type Numbers<'a> = (((&'a f64, &'a [f64; 2]), &'a f64), &'a f64);
 
-/// Those that a channel can use, in the order of their times.
+/// The measurements that a channel can use, in order of time.
 fn stops(
     t: &[f64],
     (place, height, heading): (&[[f64; 2]], &[f64], Option<&[f64]>),
@@ -111,7 +112,7 @@ fn stops(
 ) -> PyResult<Vec<Stop>> {
     let lines = t.iter().zip(place).zip(height).zip(value).enumerate();
     let stop = |(line, (((&t, &place), &height), &value)): (usize, Numbers<'_>)| {
-        // As logs are read, to the microsecond.
+        // Rounded to the microsecond, as the readers of logs do.
         let t = microseconds(t) as f64 * 1e-6;
         let heading = heading.and_then(|all| all.get(line).copied()).filter(|it| it.is_finite());
         let loss = if quantity == Quantity::Level { -value } else { value };
@@ -134,9 +135,9 @@ struct Found {
     /// The measurements that were used.
     stops: Vec<Stop>,
     estimates: Vec<Estimate>,
-    /// What speaks against the flight as it was explained: a sentence each.
+    /// The reasons against the explanation of the flight, one sentence each.
     doubts: Vec<String>,
-    /// What the measurements show before the user is searched.
+    /// The findings about the measurements before the search for the user.
     findings: Vec<Finding>,
 }
 

@@ -1,4 +1,4 @@
-//! The one exception.
+//! The package's only exception.
 
 use std::fmt::Display;
 
@@ -13,17 +13,17 @@ create_exception!(
     "What was given cannot be used: the sentence says what was found, and what was expected."
 );
 
-/// With a crate's sentence.
+/// An exception with a crate's sentence.
 pub(crate) fn refused(error: impl Display) -> PyErr {
     KestirimError::new_err(error.to_string())
 }
 
-/// With a crate's sentence about one of the samples, counted from 0 as Python does.
+/// An exception with a crate's sentence about one of the samples, which are counted from 0 as in Python.
 pub(crate) fn refused_at(index: usize, error: impl Display) -> PyErr {
     KestirimError::new_err(format!("sample {index}: {error}"))
 }
 
-/// None of the words that are understood.
+/// An exception for a word that is not among the known ones.
 pub(crate) fn unknown(what: &str, found: &str, expected: &str) -> PyErr {
     KestirimError::new_err(format!("{what}: expected {expected}, found {found:?}"))
 }

@@ -1,4 +1,4 @@
-//! Where a receiver is, from its observations and precise orbits and clocks, or what satellites broadcast.
+//! The position of a receiver, from its observations and precise orbits and clocks, or broadcast ephemerides.
 
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ use pyo3::types::PyDict;
 use crate::arrays::{Results, code, reasons};
 use crate::error::{KestirimError, refused, unknown};
 
-/// Stack of the thread that filters.
+/// The stack size of the thread that filters, bytes.
 const STACK_BYTES: usize = 16 << 20;
 
 /// A receiver's positions.
@@ -74,7 +74,7 @@ pub(crate) fn gnss<'py>(
                 follow(&recording, epochs, &receiver, config, pass, &mut || ())
             };
             let mut followed = run(Order::Forwards);
-            // Before they are smoothed: what the observations tell, they tell of one direction.
+            // Before smoothing: the observations' warnings refer to one direction of time.
             let doubts = recording.doubts().and(followed.doubts());
             let warnings = recording.warnings(Corrections::ALL).chain(followed.warnings());
             let warnings = warnings.collect();
@@ -129,7 +129,7 @@ fn ambiguities(name: &str) -> PyResult<Ambiguities> {
 struct Found {
     followed: Followed,
     warnings: Vec<String>,
-    /// What concerns every epoch.
+    /// The doubts that concern every epoch.
     doubts: Health,
 }
 

@@ -1,7 +1,7 @@
-//! `kestirim._kestirim`: what Python calls. It feeds the systems' crates and the building blocks from `NumPy` arrays and
-//! knows no estimator itself; shapes are checked by the package around it, `python/kestirim`.
+//! `kestirim._kestirim`: the functions that Python calls. It feeds the systems' crates and the building blocks from
+//! `NumPy` arrays and contains no estimator itself; the package around it, `python/kestirim`, checks shapes.
 //!
-//! Every function reads its arrays in place, lets other Python threads run while it computes, and hands its results over
+//! Every function reads its arrays in place, lets other Python threads run while it computes, and returns its results
 //! without a copy.
 #![allow(
     unsafe_code,

@@ -1,4 +1,4 @@
-//! A stranger's log of an inertial sensor.
+//! Logs of inertial sensors in any format.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -55,7 +55,7 @@ pub(crate) fn read_imu<'py>(
     Ok(results.done())
 }
 
-/// What is said about a log, in the words of the command line.
+/// Parses a statement about a log, in the syntax of the command line.
 fn said<T: FromStr<Err: std::fmt::Display>>(name: &str, text: Option<&str>) -> PyResult<Option<T>> {
     let read = text.map(str::parse).transpose();
     read.map_err(|error: T::Err| KestirimError::new_err(format!("{name}: {error}")))

@@ -1,4 +1,4 @@
-//! Where a foot walked.
+//! The path of a walking foot.
 
 use kestirim_replay::Finding;
 use kestirim_replay::pedestrian::{
@@ -58,7 +58,7 @@ pub(crate) fn pedestrian<'py>(
     results(py, &found, &findings)
 }
 
-/// Refuses times that are none.
+/// Converts arrays to samples; refuses invalid times.
 fn samples(t: &[f64], accel: &[[f64; 3]], gyro: &[[f64; 3]]) -> PyResult<Vec<Sample>> {
     let lines = t.iter().zip(accel).zip(gyro).enumerate();
     let sample = |(index, ((&t, &specific_force), &angular_rate))| {

@@ -1,4 +1,4 @@
-//! Where a tag is, from ranges to anchors.
+//! The position of a tag, from ranges to anchors.
 
 use kestirim_replay::Finding;
 use kestirim_replay::robot::{
@@ -13,7 +13,7 @@ use crate::arrays::{
 };
 use crate::error::{KestirimError, refused_at};
 
-/// What helps if the ranges do not tell the height.
+/// The hint for ranges that do not determine the height.
 const MISSING: &str = "expected height, metres above the floor (or dim=3)";
 
 /// A tag's track.
@@ -79,7 +79,7 @@ pub(crate) fn robot<'py>(
     };
     let names = (0..places.len()).map(|anchor| anchor.to_string()).collect();
     let anchors = Anchors { names, positions: places.to_vec() };
-    // In space the height is estimated, and begun at the anchors' mean.
+    // In space the height is estimated, starting at the anchors' mean.
     let mean = places.iter().map(|[_, _, z]| z).sum::<f64>() / places.len().max(1) as f64;
     let setup = Setup {
         dimensions,
@@ -93,16 +93,16 @@ pub(crate) fn robot<'py>(
     results(py, followed.map_err(refused)?, &log)
 }
 
-/// What came of a log.
+/// The results of tracking a log.
 struct Followed {
     trace: Trace,
     found: Option<FoundHeight>,
     smoothed: Option<Result<Smoothed, Unsmoothed>>,
-    /// What the log shows before it is followed.
+    /// The findings about the log before it is tracked.
     findings: Vec<Finding>,
-    /// What was changed of the log.
+    /// The changes that were made to the log.
     changed: Vec<String>,
-    /// Whether ranges were put in the order of their times.
+    /// Whether the ranges were sorted by time.
     is_sorted: bool,
 }
 
@@ -134,7 +134,7 @@ fn follow(
     Ok(Followed { trace, found: setup.found, smoothed, findings, changed, is_sorted })
 }
 
-/// Ranges in the order of their log, of which one that did not come is not a number; refuses what no log can mean.
+/// The ranges in the order of the log, with NaN for those that are missing; refuses values that no log can contain.
 fn ranges(t: &[f64], anchor: &[i64], range: &[f64], anchors: usize) -> PyResult<Vec<RangeRow>> {
     let lines = t.iter().zip(anchor).zip(range).enumerate();
     let row = |(index, ((t, anchor), range)): (usize, ((&f64, &i64), &f64))| {
@@ -202,8 +202,8 @@ fn results<'py>(
         .done())
 }
 
-/// Of each row of the log, of which ranges were perhaps put in the order of their times: whether its range was taken in, and
-/// its normalised innovation squared.
+/// For each row of the log, whose ranges may have been sorted by time: whether its range was accepted, and its
+/// normalised innovation squared.
 fn by_row(trace: &Trace, log: &[RangeRow], is_sorted: bool) -> (Vec<bool>, Vec<f64>) {
     let mut order: Vec<usize> = (0..log.len()).collect();
     if is_sorted {
@@ -212,7 +212,7 @@ fn by_row(trace: &Trace, log: &[RangeRow], is_sorted: bool) -> (Vec<bool>, Vec<f
     let (mut taken, mut nis) = (vec![false; log.len()], vec![f64::NAN; log.len()]);
     let mut followed = trace.ranges.iter().peekable();
     for row in order {
-        // In that order; what had no range, or a time far ahead, is not among them.
+        // In the sorted order; rows without a range, or with a time far ahead, are not among them.
         let next = followed.next_if(|(range, _)| {
             let RangeRow { time_us, anchor, range: metres } = log[row];
             (range.time_us, range.anchor, Some(range.metres)) == (time_us, anchor, metres)

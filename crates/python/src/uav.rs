@@ -1,4 +1,4 @@
-//! How an aircraft flies: α, q, V, θ from some sensors.
+//! The longitudinal state of an aircraft: α, q, V, θ from some sensors.
 
 use kestirim_health::{Health, Reason};
 use kestirim_observer_design::{Complex, Discrete};
@@ -106,7 +106,7 @@ fn dynamics(a: &[[f64; 4]], b: &[[f64; 2]], interval: Option<f64>) -> PyResult<D
     }
 }
 
-/// A state's name if a row of C is that state, else its number.
+/// The name of the state that a row of C selects, else the number of the output.
 fn name(output: usize, row: &[f64; 4]) -> String {
     let states = (0..4).zip(STATE_COLUMNS);
     let is_state = |state: usize| (0..4).all(|i| row[i] == f64::from(u8::from(i == state)));
@@ -114,7 +114,7 @@ fn name(output: usize, row: &[f64; 4]) -> String {
     state.map_or_else(|| format!("output {output}"), |(_, name)| name.to_owned())
 }
 
-/// What was logged: not a number where nothing was measured.
+/// The samples of a log; values that are NaN were not measured.
 fn samples(t: &[f64], inputs: &[[f64; 2]], measured: &[f64], outputs: usize) -> Vec<Sample> {
     let lines = t.iter().zip(inputs).zip(measured.chunks_exact(outputs));
     let known = |value: &f64| Some(*value).filter(|value| !value.is_nan());

@@ -1,20 +1,20 @@
-//! Least squares over a chain of states that have some parameters in common.
+//! Least squares over a chain of states that share some parameters.
 //!
-//! State k is tied to state k + 1 alone, and every one to the parameters. The normal equations are then block
-//! tridiagonal with a border, and solved in a time that grows with the number of states, as are the covariances of each
-//! state: forward elimination and backward substitution, which is the fixed-interval smoother of Rauch, Tung and
-//! Striebel (1965) with the border after Schur.
+//! State k is tied to state k + 1 alone, and each state to the parameters. The normal equations are then block
+//! tridiagonal with a border. They are solved, with the covariance of each state, in time proportional to the number of
+//! states: by forward elimination and backward substitution, which is the fixed-interval smoother of Rauch, Tung and
+//! Striebel (1965), with the border by the Schur complement.
 
 use nalgebra::{Cholesky, Const, DMatrix, DVector, Dyn, OMatrix, SMatrix, SVector};
 
-/// N rows, one of each unknown of a state, with a column a parameter.
+/// A block of N rows, one for each unknown of a state, with a column per parameter.
 type Border<const N: usize> = OMatrix<f64, Const<N>, Dyn>;
 
-/// Normal equations of states of N unknowns.
+/// The normal equations of states of N unknowns each.
 #[derive(Debug, Clone)]
 pub(crate) struct Chain<const N: usize> {
     diagonal: Vec<SMatrix<f64, N, N>>,
-    /// Rows of state k, columns of state k + 1.
+    /// Off-diagonal blocks: rows of state k, columns of state k + 1.
     next: Vec<SMatrix<f64, N, N>>,
     border: Vec<Border<N>>,
     right: Vec<SVector<f64, N>>,
@@ -22,43 +22,43 @@ pub(crate) struct Chain<const N: usize> {
     corner_right: DVector<f64>,
 }
 
-/// Residual of a tie of two states, K numbers that are independent and of variance one, with its derivatives.
+/// A tie between two states: K residuals that are independent and of variance one, with their derivatives.
 #[derive(Debug, Clone)]
 pub(crate) struct Tie<const N: usize, const K: usize> {
-    /// By how much it misses zero.
+    /// The residuals.
     pub(crate) residual: SVector<f64, K>,
-    /// Derivatives by the state before …
+    /// Derivatives with respect to the earlier state.
     pub(crate) before: SMatrix<f64, K, N>,
-    /// … by the state after …
+    /// Derivatives with respect to the later state.
     pub(crate) after: SMatrix<f64, K, N>,
-    /// … and by parameters.
+    /// Derivatives with respect to parameters.
     pub(crate) shared: Vec<(usize, SVector<f64, K>)>,
 }
 
-/// What is wanted of a solution.
+/// The results that are requested of a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Want {
     /// The step alone.
     Step,
-    /// Covariances, too.
+    /// The step and the covariances.
     Covariances,
 }
 
-/// What solves the normal equations.
+/// The solution of the normal equations.
 #[derive(Debug, Clone)]
 pub(crate) struct Solution<const N: usize> {
     /// Step of each state.
     pub(crate) states: Vec<SVector<f64, N>>,
     /// Step of the parameters.
     pub(crate) parameters: DVector<f64>,
-    /// Covariance of each state; none if they were not wanted.
+    /// Covariance of each state; empty if covariances were not requested.
     pub(crate) covariances: Vec<SMatrix<f64, N, N>>,
     /// Covariance of the parameters.
     pub(crate) parameter_covariance: DMatrix<f64>,
 }
 
 impl<const N: usize> Chain<N> {
-    /// Of so many states and parameters, of which nothing is known.
+    /// The equations for the given numbers of states and parameters, without any information yet.
     pub(crate) fn new(states: usize, parameters: usize) -> Self {
         Self {
             diagonal: vec![SMatrix::zeros(); states],
@@ -70,8 +70,8 @@ impl<const N: usize> Chain<N> {
         }
     }
 
-    /// Adds a number that depends on one state and on parameters: its residual, its derivatives, and the inverse of its
-    /// variance.
+    /// Adds an observation that depends on one state and on parameters: its residual, its derivatives, and the inverse
+    /// of its variance.
     pub(crate) fn observe(
         &mut self,
         state: usize,
@@ -93,13 +93,13 @@ impl<const N: usize> Chain<N> {
         }
     }
 
-    /// Adds the prior of a parameter: by how much it misses what it is about, and the inverse of its variance.
+    /// Adds the prior of a parameter: the deviation from its prior mean, and the inverse of its variance.
     pub(crate) fn add_prior(&mut self, parameter: usize, residual: f64, information: f64) {
         self.corner[(parameter, parameter)] += information;
         self.corner_right[parameter] -= information * residual;
     }
 
-    /// Adds what ties a state to the one after it.
+    /// Adds a tie between a state and the next one.
     pub(crate) fn tie<const K: usize>(&mut self, state: usize, tie: &Tie<N, K>) {
         let (before, after) = (tie.before.transpose(), tie.after.transpose());
         self.diagonal[state] += before * tie.before;
@@ -119,7 +119,7 @@ impl<const N: usize> Chain<N> {
         }
     }
 
-    /// The solution; none if the equations do not determine all unknowns.
+    /// Solves the equations; `None` if they do not determine all unknowns.
     pub(crate) fn solve(mut self, want: Want) -> Option<Solution<N>> {
         let count = self.diagonal.len();
         let mut inverses = Vec::with_capacity(count);
@@ -139,7 +139,7 @@ impl<const N: usize> Chain<N> {
         let corner = Cholesky::new(self.corner)?;
         let (parameters, parameter_covariance) =
             (corner.solve(&self.corner_right), corner.inverse());
-        // Of each state: what it is without a step of the parameters, and how it depends on them.
+        // For each state: its value without a step of the parameters, and its dependence on them.
         let mut states = vec![SVector::zeros(); count];
         let wanted = if want == Want::Step { 0 } else { count };
         let mut covariances = vec![SMatrix::zeros(); wanted];
@@ -175,7 +175,7 @@ impl<const N: usize> Chain<N> {
 mod tests {
     use super::*;
 
-    /// The same equations with all unknowns in one matrix.
+    /// Compares with the same equations in one matrix.
     #[test]
     fn a_chain_is_solved_as_one_matrix_would_be() {
         const STATES: usize = 5;

@@ -1,18 +1,19 @@
-//! Deviations over their sigmas, of which outliers count for a little: how large they are, and how alike the next is.
+//! Size and correlation of normalised deviations, in which outliers count for little.
 
 use crate::metrics::mean;
 
-/// Means of deviations over their sigmas. Where these are right and the deviations independent, 1 and 0.
+/// Means over normalised deviations (deviations over their sigmas). If the sigmas are right and the deviations
+/// independent, they are 1 and 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Clipped {
     /// Mean square.
     pub(crate) square: f64,
-    /// Mean product of each with the next.
+    /// Mean product of successive deviations.
     pub(crate) product: f64,
 }
 
 impl Clipped {
-    /// Of these; what is beyond `most` counts for as much.
+    /// Computes the means; deviations are clipped to ±`most`.
     pub(crate) fn of(ratios: impl Iterator<Item = f64>, most: f64) -> Self {
         let clipped: Vec<f64> = ratios.map(|it| it.clamp(-most, most)).collect();
         let squares: Vec<f64> = clipped.iter().map(|it| it * it).collect();

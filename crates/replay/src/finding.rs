@@ -1,33 +1,33 @@
-//! What a log shows before any estimator has seen it.
+//! Findings: what a log shows before any estimator has seen it.
 
 use kestirim_health::{Health, Reason};
 
-/// Something that a log shows.
+/// A finding about a log.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Finding {
-    /// What it is about, such as `rate`.
+    /// The subject, such as `rate`.
     pub about: &'static str,
-    /// Why answers suffer, if it harms.
+    /// The reason why answers suffer, if it does harm.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub reason: Option<Reason>,
-    /// What was found.
+    /// The fact that was found.
     pub found: String,
-    /// What comes of it, if it harms.
+    /// The consequence, if it does harm.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub consequence: Option<String>,
-    /// What to do about it.
+    /// The remedy.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub remedy: Option<String>,
 }
 
 impl Finding {
-    /// What harms nothing.
+    /// A finding that does no harm.
     pub fn note(about: &'static str, found: impl Into<String>) -> Self {
         Self { about, reason: None, found: found.into(), consequence: None, remedy: None }
     }
 
-    /// What harms, how, and what to do.
+    /// A finding that does harm, with its consequence and remedy.
     pub fn fault(
         about: &'static str,
         reason: Reason,
@@ -43,17 +43,17 @@ impl Finding {
         }
     }
 
-    /// Whether it harms.
+    /// Whether it does harm.
     pub fn is_fault(&self) -> bool {
         self.reason.is_some()
     }
 
-    /// What findings say against every estimate that is made of a log.
+    /// The doubts that findings cast on every estimate made from a log.
     pub fn doubts<'a>(findings: impl IntoIterator<Item = &'a Self>) -> Health {
         findings.into_iter().filter_map(|finding| finding.reason).collect()
     }
 
-    /// As a warning.
+    /// The finding as a warning.
     pub fn sentence(&self) -> String {
         let rest = self.consequence.iter().chain(&self.remedy);
         rest.fold(self.found.clone(), |sentence, part| format!("{sentence}; {part}"))

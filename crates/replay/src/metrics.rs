@@ -1,29 +1,28 @@
-//! How good an estimate is: errors, spreads, and the alignment that makes two tracks comparable.
+//! Quality of estimates: errors, spreads, and the alignment that makes two tracks comparable.
 //!
 //! Horizontal positions are `[x, y]` in metres, in any right-handed frame with z up.
 
 /// Standard gravity, m/s²: the g in which accelerometers are specified.
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
 
-/// Root mean square; 0 of nothing.
+/// Root mean square; 0 for an empty slice.
 pub fn rms(values: &[f64]) -> f64 {
     mean(&values.iter().map(|value| value * value).collect::<Vec<_>>()).sqrt()
 }
 
-/// Arithmetic mean; 0 of nothing.
+/// Arithmetic mean; 0 for an empty slice.
 pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
-/// Standard deviation of a sample (divided by n − 1); 0 of fewer than two values.
+/// Standard deviation of a sample (divided by n − 1); 0 for fewer than two values.
 pub fn standard_deviation(values: &[f64]) -> f64 {
     let centre = mean(values);
     let squares: f64 = values.iter().map(|value| (value - centre).powi(2)).sum();
     (squares / values.len().saturating_sub(1).max(1) as f64).sqrt()
 }
 
-/// The value below which `percent` of the values lie, interpolated between neighbours; 0 of
-/// nothing.
+/// The value below which `percent` of the values lie, interpolated between neighbours; 0 for an empty slice.
 pub fn percentile(values: &[f64], percent: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -34,13 +33,13 @@ pub fn percentile(values: &[f64], percent: f64) -> f64 {
     sorted[below] + (sorted[above] - sorted[below]) * place.fract()
 }
 
-/// The middle value; 0 of nothing.
+/// The median; 0 for an empty slice.
 pub fn median(values: &[f64]) -> f64 {
     percentile(values, 50.0)
 }
 
-/// By how many percent `value` is larger than `reference` (negative: smaller); none if there is
-/// nothing to compare with.
+/// The relative difference of `value` from `reference` in percent (negative if smaller); `None` unless `reference` is
+/// positive.
 pub fn relative_error_percent(value: f64, reference: f64) -> Option<f64> {
     (reference > 0.0).then(|| 100.0 * (value - reference) / reference)
 }
@@ -55,7 +54,7 @@ pub fn polyline_length(points: &[[f64; 2]]) -> f64 {
     points.windows(2).map(|pair| distance(pair[0], pair[1])).sum()
 }
 
-/// Distance from the first to the last point, m; 0 of nothing.
+/// Distance from the first to the last point, m; 0 for an empty slice.
 pub fn closure(points: &[[f64; 2]]) -> f64 {
     match (points.first(), points.last()) {
         (Some(&first), Some(&last)) => distance(first, last),
@@ -65,26 +64,25 @@ pub fn closure(points: &[[f64; 2]]) -> f64 {
 
 /// Horizontal distances, m, between corresponding points of two tracks after yaw alignment.
 ///
-/// An inertial tracker knows neither where it starts nor which way it looks: both tracks are moved
-/// so that they start at the origin, then `ours` is turned about it by the one angle that
-/// minimises the sum of the squared distances.
+/// An inertial tracker knows neither its start nor its initial heading: both tracks are moved so that they start at the
+/// origin, then `ours` is turned about it by the one angle that minimises the sum of the squared distances.
 pub fn aligned_errors(ours: &[[f64; 2]], truth: &[[f64; 2]]) -> Vec<f64> {
     let (sin, cos) = best_turn(ours, truth).sin_cos();
     let pairs = from_start(ours).into_iter().zip(from_start(truth));
     pairs.map(|(a, b)| distance([cos * a[0] - sin * a[1], sin * a[0] + cos * a[1]], b)).collect()
 }
 
-/// By which angle, rad, anticlockwise, [`aligned_errors`] turns `ours` about its start; 0 of nothing.
+/// The angle, rad, anticlockwise, by which [`aligned_errors`] turns `ours` about its start; 0 for empty tracks.
 pub fn best_turn(ours: &[[f64; 2]], truth: &[[f64; 2]]) -> f64 {
     let (ours, truth) = (from_start(ours), from_start(truth));
-    // Not `sum`, which of nothing is −0, whose angle is π.
+    // Not `sum`, which is −0 for no terms, with an angle of π.
     let (sine, cosine) = ours.iter().zip(&truth).fold((0.0, 0.0), |(sine, cosine), (a, b)| {
         (sine + (a[0] * b[1] - a[1] * b[0]), cosine + (a[0] * b[0] + a[1] * b[1]))
     });
     f64::atan2(sine, cosine)
 }
 
-/// Root mean square error over root mean square standard deviation, of pairs of both; none of none.
+/// Root mean square error over root mean square standard deviation, from pairs of both; `None` without pairs.
 pub fn error_over_sigma(told: impl IntoIterator<Item = (f64, f64)>) -> Option<f64> {
     let [errors, sigmas] = told.into_iter().fold([0.0, 0.0], |[errors, sigmas], (error, sigma)| {
         [errors + error * error, sigmas + sigma * sigma]
@@ -92,7 +90,7 @@ pub fn error_over_sigma(told: impl IntoIterator<Item = (f64, f64)>) -> Option<f6
     (sigmas > 0.0).then(|| (errors / sigmas).sqrt())
 }
 
-/// A ratio as people read it.
+/// A ratio as text, or a dash.
 pub fn ratio_in_words(ratio: Option<f64>) -> String {
     ratio.map_or_else(|| "—".to_owned(), |ratio| format!("{ratio:.2}"))
 }

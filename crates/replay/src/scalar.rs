@@ -1,6 +1,6 @@
 //! Number types.
 
-/// Number type in which an estimator computes.
+/// The number type in which an estimator computes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
@@ -15,10 +15,10 @@ pub enum ScalarKind {
 }
 
 impl ScalarKind {
-    /// All of them.
+    /// All number types.
     pub const ALL: [Self; 3] = [Self::F32, Self::F64, Self::Fixed];
 
-    /// As people write it.
+    /// The name as it is written.
     pub const fn name(self) -> &'static str {
         match self {
             Self::F32 => "f32",

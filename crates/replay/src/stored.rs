@@ -1,4 +1,4 @@
-//! Trackers that are stored, and go on elsewhere.
+//! Storing trackers, so that they can continue elsewhere.
 
 use kestirim_scalar::Scalar;
 #[cfg(feature = "snapshot")]
@@ -9,7 +9,7 @@ use serde::{Serialize, de::DeserializeOwned};
 /// A scalar in which trackers can be stored.
 #[cfg(feature = "snapshot")]
 pub trait Number: Scalar + Serialize + DeserializeOwned {}
-/// A scalar; with the feature `snapshot` one in which trackers can be stored.
+/// A scalar; with the feature `snapshot`, one in which trackers can be stored.
 #[cfg(not(feature = "snapshot"))]
 pub trait Number: Scalar {}
 
@@ -21,28 +21,28 @@ impl<T: Scalar> Number for T {}
 /// An estimator that can be stored.
 #[cfg(feature = "snapshot")]
 pub trait Stored: Layout + Serialize + DeserializeOwned {
-    /// All that it needs to go on elsewhere.
+    /// The snapshot of everything that it needs to continue elsewhere.
     fn stored(&self) -> Option<Vec<u8>> {
         let mut buffer = vec![0; kestirim_snapshot::size(self).ok()?];
         kestirim_snapshot::store(self, &mut buffer).ok()?;
         Some(buffer)
     }
 
-    /// The one that was stored; none if these bytes are no snapshot of such a one.
+    /// Restores an estimator; `None` if these bytes are not a snapshot of this type.
     fn restored(bytes: &[u8]) -> Option<Self> {
         kestirim_snapshot::load(bytes).ok()
     }
 }
 
-/// Any estimator; with the feature `snapshot` one that can be stored.
+/// Any estimator; with the feature `snapshot`, one that can be stored.
 #[cfg(not(feature = "snapshot"))]
 pub trait Stored: Sized {
-    /// None without the feature `snapshot`.
+    /// Always `None` without the feature `snapshot`.
     fn stored(&self) -> Option<Vec<u8>> {
         None
     }
 
-    /// None without the feature `snapshot`.
+    /// Always `None` without the feature `snapshot`.
     fn restored(_: &[u8]) -> Option<Self> {
         None
     }
@@ -53,12 +53,12 @@ impl<E: Layout + Serialize + DeserializeOwned> Stored for E {}
 #[cfg(not(feature = "snapshot"))]
 impl<E> Stored for E {}
 
-/// Numbers, and a snapshot behind them.
+/// Writes numbers, followed by a snapshot.
 pub(crate) fn behind<const N: usize>(numbers: [u64; N], snapshot: &[u8]) -> Vec<u8> {
     numbers.into_iter().flat_map(u64::to_le_bytes).chain(snapshot.iter().copied()).collect()
 }
 
-/// The same read again.
+/// Reads numbers and the snapshot that follows them.
 pub(crate) fn read<const N: usize>(mut bytes: &[u8]) -> Option<([u64; N], &[u8])> {
     let mut numbers = [0; N];
     for number in &mut numbers {

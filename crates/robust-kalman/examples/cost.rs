@@ -1,4 +1,4 @@
-//! What an update of 22 measurements costs, code and phase of eleven satellites:
+//! Measures the time of an update by 22 measurements, code and phase of eleven satellites:
 //! `cargo run --release -p kestirim-robust-kalman --example cost`.
 
 use core::hint::black_box;
@@ -9,7 +9,7 @@ use std::time::Instant;
 
 const SATELLITES: usize = 11;
 
-/// Of three coordinates, a clock, a zenith delay and ambiguities from index 5 on.
+/// Rows over three coordinates, a clock, a zenith delay and ambiguities from index 5 on.
 fn rows() -> Vec<Vec<(usize, f64)>> {
     let row = |satellite: usize| {
         let azimuth = satellite as f64 * 2.4;

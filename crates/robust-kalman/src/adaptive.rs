@@ -1,12 +1,12 @@
 use crate::{Descent, Error, MOST_STATES};
 use kestirim_scalar::Scalar;
 
-/// Neighbouring states that an adaptive factor acts on.
+/// A block of neighbouring states on which an adaptive factor acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Block {
-    /// The index of the first.
+    /// Index of the first state.
     pub first: usize,
     /// Number of states, up to [`MOST_STATES`].
     pub count: usize,
@@ -30,58 +30,59 @@ impl Block {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Discrepancy {
-    /// √(εᵀε / tr Qε) (22, whose root is published around the trace alone). It is dominated by the state of
+    /// √(εᵀε / tr Qε) (22, whose root is published around the trace alone). Dominated by the state with
     /// the largest prior variance, such as a receiver's clock.
     Innovation,
-    /// √(dᵀ C⁻¹ d / count): d is how far the epoch alone, with all that is known of the *other* states,
-    /// puts the block from its prediction, C the covariance of that distance. 1 on average.
+    /// √(dᵀ C⁻¹ d / count), where d is the distance of the block from its prediction according to the epoch alone,
+    /// given all that is known of the *other* states, and C the covariance of that distance. 1 on average.
     Block,
-    /// ‖d‖ / √tr P⁻ of the block (Yang, He and Xu 2001): the same distance in units of the prediction
-    /// alone. Where the epoch is less precise than the prediction it fires at noise.
+    /// ‖d‖ / √tr P⁻ of the block (Yang, He and Xu 2001): the distance d of [`Discrepancy::Block`] in units of the
+    /// prediction alone. Where the epoch is less precise than the prediction, it responds to noise.
     Prediction,
 }
 
-/// Order of adaptive factor and weights.
+/// Order in which the adaptive factor and the weights are determined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Order {
-    /// After the measurements have their weights, as published: no outlier is taken for motion, but
-    /// a motion that all measurements show may be taken for outliers.
+    /// The factor after the weights, as published: no outlier is mistaken for motion, but
+    /// a motion that all measurements show may be mistaken for outliers.
     AfterWeights,
-    /// Before: no motion is taken for outliers, but an outlier may be taken for motion.
+    /// The factor before the weights: no motion is mistaken for outliers, but an outlier may be mistaken for motion.
     BeforeWeights,
-    /// After, unless more than a third of the measurements would lose weight: then it was motion, and
-    /// they are judged anew when the block has been put in doubt.
+    /// The factor after the weights, unless more than a third of the measurements would lose weight: that is taken for
+    /// motion, and they are judged anew once the block has been inflated.
     ByMajority,
 }
 
-/// An adaptive factor a ≤ 1 on a block of P⁻: the block over a. The rest of P⁻ is kept, with what ties it
-/// to the block: on all of it, a would discard what is not in doubt, and a deviation of the block would be
-/// taken for one of the states that correlate with it.
+/// An adaptive factor a ≤ 1, by which a block of P⁻ is divided.
+///
+/// The rest of P⁻ is kept, including the covariances with the block: applied to all of P⁻, a would discard what is not
+/// in doubt, and a deviation of the block would be attributed to states that correlate with it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Adaptive<T> {
     /// The states in doubt.
     pub block: Block,
-    /// Statistic by which they are judged.
+    /// Statistic by which the prediction of these states is judged.
     pub discrepancy: Discrepancy,
-    /// Up to c0 the prediction has full weight, a = 1; usually 1.5 to 3.
+    /// c0, the discrepancy up to which the prediction has full weight, a = 1; usually 1.5 to 3.
     pub c0: T,
-    /// Beyond c1 the factor a is at its floor; usually 3 to 8.
+    /// c1, the discrepancy beyond which a is at its floor; usually 3 to 8.
     pub c1: T,
-    /// Course of a between them.
+    /// Course of a between c0 and c1.
     pub descent: Descent,
-    /// The smallest a (published as 0, by which (13) cannot divide).
+    /// The smallest a (0 as published, by which (13) cannot divide).
     pub floor: T,
-    /// Order of factor and weights.
+    /// Order in which the factor and the weights are determined.
     pub order: Order,
 }
 
-/// A choice of the adaptive factor: at run time, or a type.
+/// A choice of the adaptive factor, at run time or by a type.
 pub trait AnyFactor<T> {
-    /// Whether there may be one; where not, it is not asked for.
+    /// Whether there can be a factor; if not, [`AnyFactor::choice`] is not called.
     const POSSIBLE: bool;
 
     /// The factor, if there is one.
@@ -97,7 +98,7 @@ impl<T: Scalar> AnyFactor<T> for Option<Adaptive<T>> {
     }
 }
 
-/// No adaptive factor, as a type.
+/// The absence of an adaptive factor, as a type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -113,7 +114,7 @@ impl<T> AnyFactor<T> for NoFactor {
 }
 
 impl<T: Scalar> Adaptive<T> {
-    /// Defaults: the block's own discrepancy between 3 and 8, as it is sharper than the published one; no
+    /// Default settings: the block's own discrepancy, which is sharper than the published one, between 3 and 8; no
     /// factor below 0.05.
     pub fn new(block: Block) -> Self {
         Self {
@@ -127,7 +128,7 @@ impl<T: Scalar> Adaptive<T> {
         }
     }
 
-    /// a in floor..=1 of a discrepancy ≥ 0.
+    /// a, in `floor..=1`, for a discrepancy ≥ 0.
     #[inline]
     pub fn factor(&self, discrepancy: T) -> T {
         self.descent.factor(discrepancy, self.c0, self.c1).max(self.floor)

@@ -4,35 +4,35 @@ use crate::{Block, Measurement};
 use kestirim_kalman::{Gaussian, Weighed};
 use kestirim_scalar::Scalar;
 
-/// The largest block that can be judged: position and velocity in space.
+/// Largest number of states in a block: position and velocity in three dimensions.
 pub const MOST_STATES: usize = 6;
 
-/// Distance of a block of the state from its prediction, by the epoch alone.
+/// Distance of a block of the state from its prediction, according to the measurements of one epoch alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Jump<T> {
     /// √(dᵀ C⁻¹ d / directions): 1 on average while the prediction holds; 0 where the epoch determines
-    /// nothing of the block.
+    /// no part of the block.
     pub discrepancy: T,
-    /// Along how many directions the epoch determines the block.
+    /// Number of directions along which the epoch determines the block.
     pub directions: usize,
     /// d, the distance of each state of the block from its prediction, in the state's unit; zeros unless
-    /// the epoch determines all of them.
+    /// the epoch determines all states of the block.
     pub distance: [T; MOST_STATES],
 }
 
-/// Least squares for an unknown jump d of the block, from the innovations that the filter makes white
-/// anyway (Friedland 1969; Willsky and Jones 1976): what of d is in the mean is carried along, in
+/// Least squares for an unknown jump d of the block, from the innovations that the filter whitens
+/// anyway (Friedland 1969; Willsky and Jones 1976). The effect of d on the mean is carried along, in
 /// units of the prediction's standard deviations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bias<T, const N: usize> {
     block: Block,
     deviations: [T; MOST_STATES],
-    /// ∂(x − mean)/∂d, a column a state of the block.
+    /// ∂(x − mean)/∂d, one column for each state of the block.
     carried: [[T; N]; MOST_STATES],
-    /// Σ sᵀs/S, its lower triangle.
+    /// Lower triangle of the information Σ sᵀs/S.
     information: [[T; MOST_STATES]; MOST_STATES],
-    /// Σ sᵀν/S.
+    /// Right-hand side Σ sᵀν/S of the normal equations.
     seen: [T; MOST_STATES],
 }
 
@@ -61,7 +61,7 @@ impl<T: Scalar, const N: usize> Bias<T, N> {
         self.block
     }
 
-    /// Before the filter takes in a measurement with row h.
+    /// Accumulates a measurement with row h, before the filter takes it in.
     #[inline]
     pub(crate) fn take(&mut self, measurement: &Measurement<'_, T>, weighed: &Weighed<T, N>) {
         let mut shown = [T::ZERO; MOST_STATES];
@@ -85,7 +85,7 @@ impl<T: Scalar, const N: usize> Bias<T, N> {
         }
     }
 
-    /// The least-squares jump, by L D Lᵀ; directions of which nothing is known are left out.
+    /// The least-squares jump, by L D Lᵀ; directions without information are left out.
     pub(crate) fn jump(&self) -> Jump<T> {
         let count = self.block.count.min(MOST_STATES);
         let mut rest = self.information;
@@ -127,7 +127,7 @@ impl<T: Scalar, const N: usize> Bias<T, N> {
         Jump { discrepancy: mean.max(T::ZERO).sqrt(), directions, distance }
     }
 
-    /// ‖d‖ / √tr P⁻ of the block; 0 where d is not determined.
+    /// ‖d‖ / √tr P⁻ of the block; 0 where the epoch does not determine d.
     pub(crate) fn in_deviations(&self, jump: &Jump<T>) -> T {
         let trace = T::norm(&self.deviations);
         if trace > T::ZERO { T::norm(&jump.distance) / trace } else { T::ZERO }

@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Reason for which an update was refused. The estimate is as it was before the call.
+/// Reason why an update was refused. The estimate is as it was before the call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -8,12 +8,12 @@ use core::fmt;
 pub enum Error {
     /// The estimate refused a measurement.
     Estimate(kestirim_kalman::Error),
-    /// The slice for decisions is shorter than that of the measurements.
+    /// The slice for the decisions is shorter than that of the measurements.
     TooFewDecisions,
-    /// The block names states that the estimate does not have, none, or more than
-    /// [`MOST_STATES`](crate::MOST_STATES).
+    /// The block is empty, names states that the estimate does not have, or has more than
+    /// [`MOST_STATES`](crate::MOST_STATES) of them.
     InvalidBlock,
-    /// Thresholds are not positive or out of order, or a floor is not in (0, 1].
+    /// A threshold is not positive or out of order, or a floor is not in (0, 1].
     InvalidConfiguration,
 }
 

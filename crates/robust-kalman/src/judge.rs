@@ -1,4 +1,4 @@
-//! Statistics and weights from the residuals of a pass.
+//! Statistics and weights from the residuals of one pass.
 
 use crate::pass::Passed;
 use crate::student::whole;
@@ -6,7 +6,7 @@ use crate::{AnyFactor, AnyScale, Decision, Measurement, Reason, Robust, WeightFu
 use kestirim_kalman::Gaussian;
 use kestirim_scalar::Scalar;
 
-/// An epoch between two passes.
+/// State of an epoch between two passes.
 pub(crate) struct Epoch<'a, 'b, T: Scalar, const N: usize> {
     pub(crate) prior: &'a Gaussian<T, N>,
     pub(crate) posterior: &'a Gaussian<T, N>,
@@ -14,9 +14,9 @@ pub(crate) struct Epoch<'a, 'b, T: Scalar, const N: usize> {
 }
 
 impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T, W, S, A> {
-    /// ṽ and the statistic of every measurement that was not treated yet, with σ̂0 if it is known already.
-    /// Returns σ̂0.
-    #[inline(never)] // Before, among and after passes: the code is there once.
+    /// Computes ṽ and the statistic of every measurement that has not been treated yet, with σ̂0 = `known` if that is
+    /// given. Returns σ̂0.
+    #[inline(never)] // Called before, between and after passes: one copy of the code.
     pub(crate) fn judge<const N: usize>(
         &self,
         epoch: &Epoch<'_, '_, T, N>,
@@ -34,8 +34,8 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T,
         self.compare(passed, known, decisions)
     }
 
-    /// The statistics of all that hold v/√Qᵥ, with σ̂0 if it is known already. Returns σ̂0.
-    #[inline(never)] // So it is here …
+    /// Computes the statistics of all decisions that hold v/√Qᵥ, with σ̂0 = `known` if that is given. Returns σ̂0.
+    #[inline(never)] // Called from several places: one copy of the code.
     pub(crate) fn compare(
         &self,
         passed: &Passed<T>,
@@ -66,8 +66,8 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T,
         scale
     }
 
-    /// v/√Qᵥ of a residual v with Qᵥ = R − h P⁺ hᵀ, if enough of R is left.
-    #[inline(never)] // … and here.
+    /// Computes v/√Qᵥ of a residual v with Qᵥ = R − h P⁺ hᵀ, provided that Qᵥ/R is above the least redundancy.
+    #[inline(never)] // Called from several places: one copy of the code.
     pub(crate) fn standardise(
         &self,
         measurement: &Measurement<'_, T>,
@@ -86,7 +86,7 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T,
         }
     }
 
-    /// The weight that a judged measurement is to have instead of its full one.
+    /// The reduced weight that a judged measurement is to have; `None` if it keeps its full weight.
     pub(crate) fn lighter(&self, decision: &Decision<T>) -> Option<T> {
         if decision.reason != Reason::Agrees {
             return None;
@@ -95,7 +95,7 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T,
         if weight >= T::ONE { None } else { Some(weight) }
     }
 
-    /// Gives a judged measurement its weight. Returns whether that changed.
+    /// Gives a judged measurement its weight. Returns whether the weight changed.
     pub(crate) fn treat(&self, decision: &mut Decision<T>) -> bool {
         let weight = self.lighter(decision);
         if let Some(weight) = weight {
@@ -105,7 +105,7 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T,
     }
 }
 
-/// T (20): the distance of each ṽ from the mean of the others in units of their standard deviation.
+/// T (20): the distance of each ṽ from the mean of the others, in units of their standard deviation.
 fn compare_with_others<T: Scalar>(decisions: &mut [Decision<T>], count: usize) {
     if count < 3 {
         return;
@@ -128,7 +128,7 @@ fn compare_with_others<T: Scalar>(decisions: &mut [Decision<T>], count: usize) {
         });
         let distance = (judged.standardised - mean).abs();
         let deviation = square.sqrt();
-        // Where nothing differs, nothing stands out.
+        // Where all values are equal, none stands out, even if the deviation is zero.
         let statistic = if distance > T::ZERO { distance / deviation } else { T::ZERO };
         if let Some(decision) = decisions.get_mut(index) {
             decision.statistic = statistic;

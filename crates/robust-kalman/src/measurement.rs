@@ -1,25 +1,26 @@
 use kestirim_kalman::{Gaussian, SparseRow};
 use kestirim_scalar::{Components, Scalar};
 
-/// One scalar measurement of an epoch, linearised at the predicted state.
+/// A scalar measurement of an epoch, linearised at the predicted state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement<'a, T> {
-    /// h = ∂h/∂x⁻: pairs of a state's index and the derivative by it; what is not named is zero.
+    /// h = ∂h/∂x⁻ as pairs of a state's index and the derivative with respect to it; states not
+    /// named have derivative zero.
     pub row: &'a [(usize, T)],
-    /// ε = z − h(x⁻), at the prediction for all measurements of the epoch.
+    /// ε = z − h(x⁻), the innovation at the prediction, for all measurements of the epoch alike.
     pub innovation: T,
-    /// R, in the measurement's unit squared.
+    /// R, the variance of the noise, in the measurement's unit squared.
     pub variance: T,
 }
 
 impl<'a, T: Scalar> Measurement<'a, T> {
-    /// A measurement from a row of `kestirim_kalman`.
+    /// A measurement with a [`SparseRow`] of `kestirim_kalman`.
     pub const fn new<const K: usize>(row: &'a SparseRow<T, K>, innovation: T, variance: T) -> Self {
         Self { row: row.entries(), innovation, variance }
     }
 
-    /// ε − h·(x − x⁻): what is left of the innovation at another mean. Indices beyond the state count
-    /// as zeros: the update has refused them before.
+    /// ε − h·(x − x⁻): the innovation relative to another mean x. Indices beyond the state count
+    /// as zeros: the update has already refused them.
     #[inline(always)]
     pub(crate) fn left<const N: usize>(&self, prior: &Gaussian<T, N>, now: &Gaussian<T, N>) -> T {
         let (before, after) = (prior.mean.as_array(), now.mean.as_array());
@@ -32,7 +33,7 @@ impl<'a, T: Scalar> Measurement<'a, T> {
         self.innovation - T::finish(sum)
     }
 
-    /// h P hᵀ.
+    /// h P hᵀ, the variance of the expected measurement.
     #[inline(always)]
     pub(crate) fn spread<const N: usize>(&self, estimate: &Gaussian<T, N>) -> T {
         let mut spread = T::accumulator();

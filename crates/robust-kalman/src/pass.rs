@@ -5,16 +5,16 @@ use crate::{Decision, Error, Measurement, Reason};
 use kestirim_kalman::Gaussian;
 use kestirim_scalar::Scalar;
 
-/// Result of a pass beside the estimate.
+/// Result of a pass, apart from the estimate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Passed<T> {
-    /// εᵀ Qε⁻¹ ε of those that were used.
+    /// εᵀ Qε⁻¹ ε of the measurements used.
     pub(crate) nis: T,
-    /// Number of those.
+    /// Number of measurements used.
     pub(crate) used: usize,
 }
 
-/// Takes the measurements into the prediction with their weights, one after the other.
+/// Takes the measurements of an epoch, with their weights, into the prediction one after the other.
 pub(crate) fn pass<T: Scalar, const N: usize>(
     prior: &Gaussian<T, N>,
     next: &mut Gaussian<T, N>,
@@ -32,7 +32,7 @@ pub(crate) fn pass<T: Scalar, const N: usize>(
         let mut weighed = next.weigh_entries(measurement.row, left, measurement.variance)?;
         if decision.weight < T::ONE {
             let Ok(lighter) = weighed.with_noise(measurement.variance / decision.weight) else {
-                // So little weight that its variance is beyond the numbers: none.
+                // The weight is so small that the variance overflows: treated as no weight.
                 (decision.weight, decision.reason) = (T::ZERO, Reason::Rejected);
                 continue;
             };

@@ -4,17 +4,17 @@ use crate::{
 use crate::{UnitScale, Weight, WeightFunction};
 use kestirim_scalar::Scalar;
 
-/// Iteration of the robust weights.
+/// How the robust weights are iterated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Reweighting {
-    /// Never: residuals are reported, weights stay 1.
+    /// No reweighting: residuals are reported, weights stay 1.
     Never,
-    /// All at once, after the first pass.
+    /// All measurements at once, after the first pass.
     OneShot,
-    /// The worst one alone, then the others are judged anew, until none exceeds the inner threshold. Each
-    /// measurement is treated once, for the cost of an update; the last judgement is of everything computed anew.
+    /// The worst measurement alone, after which the others are judged anew, until none exceeds the inner threshold.
+    /// Each measurement is treated once, at the cost of an update; the last judgement is on everything computed anew.
     WorstFirst {
         /// Largest number of measurements that are treated.
         #[cfg_attr(feature = "serde", serde(with = "limit"))]
@@ -22,12 +22,12 @@ pub enum Reweighting {
     },
 }
 
-/// A limit means the same where a `usize` has fewer bits: none stays none.
+/// Serialises a limit so that it means the same on targets whose `usize` has fewer bits: no limit stays no limit.
 #[cfg(feature = "serde")]
 mod limit {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    #[allow(clippy::trivially_copy_pass_by_ref)] // As serde wants it.
+    #[allow(clippy::trivially_copy_pass_by_ref)] // The signature that serde requires.
     pub(super) fn serialize<S: Serializer>(
         limit: &usize,
         serializer: S,
@@ -43,33 +43,34 @@ mod limit {
     }
 }
 
-/// A robust, and maybe adaptive, Kalman update for any measurements: how it finds outliers and what it
-/// does about them. The five constructors are the five published filters; W is the weight function, S the scale,
-/// A the adaptive factor, each chosen at run time unless [`Robust::lean`] makes it a type.
+/// A robust and optionally adaptive Kalman update for any measurements: how outliers are found and treated.
+///
+/// The five constructors are the five published filters. W is the weight function, S the scale and
+/// A the adaptive factor; each is chosen at run time unless [`Robust::lean`] makes it a type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Robust<T, W = Weight<T>, S = Scale<T>, A = Option<Adaptive<T>>> {
     /// Weight function.
     pub weight: W,
-    /// Scale of the residuals, σ̂0.
+    /// Scale σ̂0 of the residuals.
     pub scale: S,
-    /// Iteration of the weights.
+    /// How the weights are iterated.
     pub reweighting: Reweighting,
-    /// Qᵥ/R up to which a measurement is not judged. Such a residual shows next to nothing of an error.
+    /// Qᵥ/R up to which a measurement is not judged, because its residual shows next to nothing of an error.
     pub least_redundancy: T,
-    /// The adaptive factor, if there is one.
+    /// Adaptive factor, if any.
     pub adaptive: A,
 }
 
 impl<T: Scalar> Robust<T> {
-    /// GKF, the plain Kalman filter. Residuals are reported all the same.
+    /// GKF, the plain Kalman filter, which reports residuals all the same.
     pub fn plain() -> Self {
         Self { reweighting: Reweighting::Never, ..Self::igg3() }
     }
 
-    /// RKF: IGG III on all measurements at once. A large outlier has moved all residuals, so good
-    /// measurements lose weight with it.
+    /// RKF: IGG III weights on all measurements at once. A large outlier affects all residuals, so good
+    /// measurements lose weight along with it.
     pub fn igg3() -> Self {
         Self {
             weight: Weight::Igg3(Igg3 {
@@ -104,7 +105,7 @@ impl<T: Scalar> Robust<T> {
         Self { adaptive: Some(Adaptive::new(block)), ..Self::iterative_igg3() }
     }
 
-    /// The published equations of the same filter: σ̂0 of (17), the bracket of (15) and (21) without its
+    /// This filter with the published equations: σ̂0 of (17), the bracket of (15) and (21) without its
     /// square, the discrepancy of (22).
     #[must_use]
     pub fn published(self) -> Self {
@@ -128,8 +129,8 @@ impl<T: Scalar, W, S, A> Robust<T, W, S, A> {
         Robust { weight, scale, reweighting, least_redundancy, adaptive }
     }
 
-    /// The same filter with another weight function, σ̂0 = 1 and no adaptive factor, all of them types: what they
-    /// have no use for takes no flash.
+    /// The same filter with another weight function, σ̂0 = 1 and no adaptive factor, all of them as types, so that the
+    /// code for the other choices takes no flash.
     #[must_use]
     pub fn lean<V: WeightFunction<T>>(self, weight: V) -> Robust<T, V, UnitScale, NoFactor> {
         let Self { reweighting, least_redundancy, .. } = self;

@@ -4,26 +4,26 @@ use crate::student::whole;
 use crate::{Decision, Reason};
 use kestirim_scalar::Scalar;
 
-/// σ̂0, how much larger errors are than their variances say; residuals are judged in units of it.
+/// σ̂0, the ratio of the actual errors to the standard deviations assumed; residuals are judged in units of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Scale<T> {
-    /// 1: the variances are trusted. Where they are right, this finds most outliers.
+    /// 1: the variances are trusted. Where they are right, this choice finds the most outliers.
     Unit,
     /// √(εᵀ Qε⁻¹ ε / n) (17). Outliers inflate it and so mask themselves: among n measurements no |ṽ|
-    /// is larger than √n, whatever the error. With k1 = 6 nothing is rejected among fewer than 37.
+    /// exceeds √n, whatever the error. With k1 = 6 nothing is rejected among fewer than 37.
     Epoch,
-    /// 1.4826 · median |ε/√(h P⁻ hᵀ + R)|, but no less than the floor: half of the measurements may be
-    /// wild. Where all are off at once it grows, and nothing is rejected; of a state that is hardly
+    /// 1.4826 · median |ε/√(h P⁻ hᵀ + R)|, but at least the floor: half of the measurements may be
+    /// outliers. Where all are off at once it grows, and nothing is rejected; where a state is hardly
     /// predicted, such as a receiver's clock, it hardly exceeds the floor.
     Innovations {
-        /// The smallest σ̂0, usually 1: few innovations that happen to be small do not make the others
+        /// The smallest σ̂0, usually 1, so that a few innovations that happen to be small do not make the others
         /// outliers.
         floor: T,
     },
-    /// The same of the residuals, |v/√Qᵥ|, after every pass: it sees noise that is larger than it should
-    /// be whatever the prediction. But with few measurements to a state, one outlier spreads over the
+    /// 1.4826 · median |v/√Qᵥ| of the residuals after every pass, but at least the floor: it reveals noise that is
+    /// larger than assumed, whatever the prediction. But with few measurements per state, one outlier spreads over the
     /// residuals of all.
     Residuals {
         /// The smallest σ̂0, usually 1.
@@ -32,7 +32,7 @@ pub enum Scale<T> {
 }
 
 impl<T: Scalar> Scale<T> {
-    /// Scale from the innovations, before anything is judged: σ̂0 for the whole epoch, if it comes from them.
+    /// σ̂0 of the whole epoch from the innovations, before anything is judged; `None` unless this scale uses them.
     #[inline(always)]
     pub(crate) fn of_innovations<const N: usize>(
         &self,
@@ -56,7 +56,7 @@ impl<T: Scalar> Scale<T> {
             Self::Residuals { floor } => from_median(decisions, floor),
             _ => T::ONE,
         };
-        // Nothing is a multiple of zero.
+        // A scale of zero cannot divide residuals.
         if estimate > T::ZERO { estimate } else { T::ONE }
     }
 
@@ -70,9 +70,9 @@ impl<T: Scalar> Scale<T> {
     }
 }
 
-/// A choice of σ̂0: at run time, or a type.
+/// A choice of σ̂0, at run time or by a type.
 pub trait AnyScale<T> {
-    /// Which it is.
+    /// The scale chosen.
     fn choice(&self) -> Scale<T>;
 }
 
@@ -100,14 +100,14 @@ fn from_median<T: Scalar>(decisions: &[Decision<T>], floor: T) -> T {
     median(decisions).map_or(floor, |median| (T::from_f64(1.4826) * median).max(floor))
 }
 
-/// Median of |ṽ| of the measurements that count; of an even number the lower one of the two in the middle, so that
-/// of four measurements two may be wild. By counting, so that nothing needs to be stored.
+/// Median of |ṽ| of the measurements that count; of an even number the lower of the middle two, so that
+/// two of four measurements may be outliers. Found by counting, so that nothing needs to be stored.
 fn median<T: Scalar>(decisions: &[Decision<T>]) -> Option<T> {
     let count = decisions.iter().filter(|decision| decision.counts()).count();
     ranked(decisions, count.checked_sub(1)? / 2)
 }
 
-/// The value that `rank` others are below of, or as large as.
+/// The value of this rank, counted from 0, in ascending order of |ṽ|.
 fn ranked<T: Scalar>(decisions: &[Decision<T>], rank: usize) -> Option<T> {
     let values = || decisions.iter().filter(|d| d.counts()).map(|d| d.standardised.abs());
     values().find(|&value| {

@@ -1,16 +1,15 @@
 use kestirim_scalar::Scalar;
 
-/// Largest degrees of freedom; beyond, Student's t is the normal distribution to three digits.
+/// Largest number of degrees of freedom; beyond it, Student's t is the normal distribution to three digits.
 const MOST_FREEDOM: usize = 1000;
-/// From the left of a concave function Newton's steps never pass the root; a dozen are usual.
+/// Limit on Newton's steps: from the left of a concave function they never pass the root, and a dozen are usual.
 const MOST_STEPS: usize = 60;
 
 /// t with P(|T| > t) = `alpha`: the two-sided threshold of Student's distribution with
-/// `freedom` ≥ 1 degrees of freedom. 0 where `alpha` is not below 1, the largest number where it is not
-/// positive.
+/// `freedom` ≥ 1 degrees of freedom. 0 if `alpha` ≥ 1, the largest number if `alpha` ≤ 0.
 ///
 /// The finite series of Abramowitz and Stegun (26.7.3, 26.7.4) for θ = atan(t/√ν), solved by Newton's
-/// method: as exact as the numbers are, without a table.
+/// method: to the precision of the number type, without a table.
 pub fn student_quantile<T: Scalar>(alpha: T, freedom: usize) -> T {
     if alpha <= T::ZERO {
         return T::MAX;
@@ -36,7 +35,7 @@ pub fn student_quantile<T: Scalar>(alpha: T, freedom: usize) -> T {
     whole::<T>(freedom).sqrt() * sine / cosine
 }
 
-/// P(|t| ≤ √ν tan θ) and its derivative by θ.
+/// P(|t| ≤ √ν tan θ) and its derivative with respect to θ.
 fn inside<T: Scalar>(theta: T, freedom: usize) -> (T, T) {
     let (sine, cosine) = theta.sin_cos();
     let odd = freedom % 2 == 1;
@@ -56,7 +55,7 @@ fn inside<T: Scalar>(theta: T, freedom: usize) -> (T, T) {
     if odd { (two_by_pi * (theta + sine * sum), two_by_pi * slope) } else { (sine * sum, slope) }
 }
 
-/// A small whole number.
+/// A whole number as a scalar.
 #[inline]
 pub(crate) fn whole<T: Scalar>(value: usize) -> T {
     T::from_binary(i32::try_from(value).unwrap_or(i32::MAX), 0)

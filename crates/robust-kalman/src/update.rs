@@ -1,4 +1,4 @@
-//! The update itself: passes and judgements in their order.
+//! The update itself: the sequence of passes and judgements.
 
 use crate::bias::{Bias, Jump};
 use crate::judge::Epoch;
@@ -14,11 +14,11 @@ use kestirim_scalar::Scalar;
 impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T, W, S, A> {
     /// Takes the measurements of an epoch into a predicted estimate, with a decision about each.
     ///
-    /// The innovations are those at the prediction. `decisions` needs a place for each measurement; what
-    /// is in it before does not matter, further places stay as they are.
+    /// All innovations are relative to the prediction. `decisions` needs a place for each measurement; its previous
+    /// contents do not matter, and further places stay as they are.
     ///
     /// # Errors
-    /// [`Error`]; the estimate is untouched, the decisions mean nothing.
+    /// [`Error`]; the estimate is untouched, and the decisions are meaningless.
     pub fn update<const N: usize>(
         &self,
         estimate: &mut Gaussian<T, N>,
@@ -48,8 +48,8 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T,
             None => Adapted { scale: run.reweight(passed, decisions)?, ..Adapted::default() },
             Some(adaptive) => run.adapt(adaptive, passed, decisions)?,
         };
-        // A measurement without noise of a state that barely moves it: what fixed point keeps of the gain may take
-        // more than there is.
+        // A noise-free measurement of a state that barely moves it: rounding of the gain in fixed point may subtract
+        // more variance than there is.
         if run.posterior.covariance.variances().iter().any(|&variance| variance < T::ZERO) {
             return Err(kestirim_kalman::Error::NotPositive.into());
         }
@@ -70,7 +70,7 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>> Robust<T,
     }
 }
 
-/// Distance at which the epoch's measurements, all with full weight, put a block of the state from its prediction.
+/// Distance of a block of the state from its prediction, according to the epoch's measurements, all with full weight.
 ///
 /// Detects a motion before measurements are judged by the prediction; the estimate is not changed.
 ///
@@ -100,7 +100,7 @@ impl<T: Scalar> Adaptive<T> {
     }
 }
 
-/// Result of judging an epoch and its prediction.
+/// Result of judging an epoch and its prediction: σ̂0, the statistic of the adaptive factor, and the factor.
 struct Adapted<T> {
     scale: T,
     discrepancy: T,
@@ -113,20 +113,20 @@ impl<T: Scalar> Default for Adapted<T> {
     }
 }
 
-/// Whether more than a third of what could be judged was down-weighted or rejected.
+/// Whether more than a third of the measurements that could be judged were down-weighted or rejected.
 fn many_are_off<T: Scalar>(decisions: &[Decision<T>]) -> bool {
     let treated = decisions.iter().filter(|decision| decision.was_treated()).count();
     let agreeing = decisions.iter().filter(|decision| decision.counts()).count();
     treated > agreeing / 2
 }
 
-/// An epoch while its measurements are judged.
+/// State of an update while the measurements of its epoch are judged.
 pub(crate) struct Run<'a, 'b, T: Scalar, W, S, A, const N: usize> {
     pub(crate) robust: &'a Robust<T, W, S, A>,
     pub(crate) prior: Gaussian<T, N>,
     pub(crate) posterior: Gaussian<T, N>,
     pub(crate) measurements: &'a [Measurement<'b, T>],
-    /// Present while the adaptive factor needs it.
+    /// Least squares for the block's jump, present while the adaptive factor needs it.
     bias: Option<Bias<T, N>>,
     passes: usize,
 }
@@ -144,7 +144,7 @@ impl<'b, T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const
         pass(&self.prior, &mut self.posterior, self.measurements, decisions, bias)
     }
 
-    /// Judges and weights until nothing is left to be treated. Returns σ̂0.
+    /// Judges and weights the measurements by the chosen iteration. Returns σ̂0.
     fn reweight(&mut self, passed: Passed<T>, decisions: &mut [Decision<T>]) -> Result<T, Error> {
         let known = self.robust.scale.choice().of_innovations(&self.epoch(), decisions);
         let scale = self.robust.judge(&self.epoch(), &passed, known, decisions);
@@ -166,7 +166,7 @@ impl<'b, T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const
         Ok(scale)
     }
 
-    /// [`Run::reweight`] and the adaptive factor in the order that is wanted.
+    /// Applies [`Run::reweight`] and the adaptive factor in the chosen order.
     fn adapt(
         &mut self,
         adaptive: &Adaptive<T>,
@@ -212,7 +212,7 @@ impl<'b, T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const
         }
     }
 
-    /// √(εᵀε / tr Qε) of the measurements of some weight.
+    /// √(εᵀε / tr Qε) of the measurements with positive weight.
     fn of_innovations(&self, decisions: &[Decision<T>]) -> T {
         let (mut square, mut trace) = (T::ZERO, T::ZERO);
         for (measurement, decision) in self.measurements.iter().zip(decisions) {
@@ -224,7 +224,7 @@ impl<'b, T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const
         if trace > T::ZERO { (square / trace).sqrt() } else { T::ZERO }
     }
 
-    /// The block's covariance over a.
+    /// Divides the block's covariance by the factor a.
     fn inflate(&mut self, block: Block, factor: T) -> Result<(), Error> {
         self.prior.covariance.inflate(block.first, block.count, factor.recip())?;
         Ok(())

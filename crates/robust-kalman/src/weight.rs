@@ -13,7 +13,7 @@ pub enum Descent {
 }
 
 impl Descent {
-    /// The factor of statistic `s` ≥ 0: 1 up to `inner`, 0 beyond `outer`.
+    /// The weight for a statistic `s` ≥ 0: 1 up to `inner`, 0 beyond `outer`.
     #[inline]
     pub fn factor<T: Scalar>(self, s: T, inner: T, outer: T) -> T {
         if s <= inner {
@@ -24,66 +24,66 @@ impl Descent {
             let rest = if self == Self::Squared { rest * rest } else { rest };
             return (inner / s * rest).clamp(T::ZERO, T::ONE);
         }
-        // NaN too has no say.
+        // NaN ends up here, too, and gets no weight.
         T::ZERO
     }
 }
 
-/// A weight function: the weight of a measurement by its standardised residual.
+/// A weight function: the weight of a measurement as a function of its standardised residual.
 ///
-/// [`Weight`] chooses among the three of this crate at run time; each is a type of its own, too, and any other can
-/// be given to [`Robust::with_weight`](crate::Robust::with_weight).
+/// [`Weight`] chooses among the three of this crate at run time. Each of them is also a type of its own, and any other
+/// can be passed to [`Robust::with_weight`](crate::Robust::with_weight).
 pub trait WeightFunction<T> {
-    /// The inner and the outer threshold among `count` measurements that can be judged; `None` if that is too few
-    /// to judge any. They are reported, and handed to [`WeightFunction::factor`].
+    /// Inner and outer threshold for `count` measurements that can be judged; `None` if that is too few
+    /// to judge any. They are reported, and passed to [`WeightFunction::factor`].
     fn thresholds(&self, count: usize) -> Option<(T, T)>;
 
-    /// γ in 0..=1 of a statistic ≥ 0 between such thresholds. It must never rise with the statistic.
+    /// γ in 0..=1 for a statistic ≥ 0, given these thresholds. It must never increase with the statistic.
     fn factor(&self, statistic: T, thresholds: (T, T)) -> T;
 
-    /// Whether its parameters can be used; if not, an update is refused.
+    /// Whether the parameters are valid; if not, an update is refused.
     fn is_valid(&self) -> bool;
 
-    /// Whether the statistic is T (20), the distance of ṽ from the mean of the others in their standard
-    /// deviations, instead of |ṽ|.
+    /// Whether the statistic is T (20), the distance of ṽ from the mean of the others in units of their standard
+    /// deviation, instead of |ṽ|.
     fn is_t_test(&self) -> bool {
         false
     }
 }
 
-/// γ = k/|ṽ| beyond k: nothing is ever rejected (Huber 1964).
+/// Huber's weight: γ = k/|ṽ| beyond k, so that nothing is ever rejected (Huber 1964).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Huber<T> {
-    /// k, usually 1.345 to 3.
+    /// k, the threshold of |ṽ|; usually 1.345 to 3.
     pub k: T,
 }
 
-/// Three parts: full weight up to k0, less up to k1, none beyond (Yang, Song and Xu 2002).
+/// IGG III weights in three parts: full up to k0, reduced up to k1, zero beyond (Yang, Song and Xu 2002).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Igg3<T> {
-    /// k0, usually 1 to 3.
+    /// k0, the |ṽ| up to which the weight is full; usually 1 to 3.
     pub k0: T,
-    /// k1, usually 3 to 8.
+    /// k1, the |ṽ| beyond which the weight is zero; usually 3 to 8.
     pub k1: T,
-    /// Course of the weight between them.
+    /// Course of the weight between k0 and k1.
     pub descent: Descent,
 }
 
-/// The same with thresholds from Student's t of n − 2 degrees of freedom, both sides: T is the distance of ṽ from
-/// the mean of the others in their standard deviations (20; Zhang et al. 2018).
+/// IGG III weights with two-sided thresholds from Student's t of n − 2 degrees of freedom. The statistic T is the
+/// distance of ṽ from the mean of the others in units of their standard deviation (20; Zhang et al. 2018).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TTest<T> {
-    /// α0, the share of good measurements that are to be down-weighted: 0.1.
+    /// α0, the share of good measurements that may be down-weighted: 0.1.
     pub alpha0: T,
-    /// α1, the share of those that are to be rejected: 0.01.
+    /// α1, the share of good measurements that may be rejected: 0.01.
     pub alpha1: T,
-    /// Course of the weight between them.
+    /// Course of the weight between the two thresholds.
     pub descent: Descent,
 }
 
@@ -92,16 +92,16 @@ pub struct TTest<T> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Weight<T> {
-    /// See [`struct@Huber`].
+    /// Huber's weight: see [`struct@Huber`].
     Huber(Huber<T>),
-    /// See [`struct@Igg3`].
+    /// IGG III: see [`struct@Igg3`].
     Igg3(Igg3<T>),
-    /// See [`struct@TTest`].
+    /// The t-test: see [`struct@TTest`].
     TTest(TTest<T>),
 }
 
 impl<T: Scalar> WeightFunction<T> for Huber<T> {
-    /// k, and the largest number.
+    /// k, and the largest value of the number type.
     #[inline]
     fn thresholds(&self, _: usize) -> Option<(T, T)> {
         Some((self.k, T::MAX))
@@ -139,7 +139,7 @@ impl<T: Scalar> WeightFunction<T> for Igg3<T> {
 }
 
 impl<T: Scalar> WeightFunction<T> for TTest<T> {
-    /// Thresholds of `count` − 2 degrees of freedom; none for fewer than three measurements.
+    /// The quantiles of `count` − 2 degrees of freedom; `None` for fewer than three measurements.
     #[inline]
     fn thresholds(&self, count: usize) -> Option<(T, T)> {
         let freedom = count.checked_sub(2).filter(|&freedom| freedom > 0)?;
@@ -176,7 +176,7 @@ impl<T: Scalar> WeightFunction<T> for Weight<T> {
     fn factor(&self, statistic: T, thresholds: (T, T)) -> T {
         match self {
             Self::Huber(huber) => huber.factor(statistic, thresholds),
-            // As both do themselves; in one arm, the code is there once.
+            // The same as both types do themselves; a single arm has the code once.
             Self::Igg3(Igg3 { descent, .. }) | Self::TTest(TTest { descent, .. }) => {
                 let (inner, outer) = thresholds;
                 descent.factor(statistic, inner, outer)

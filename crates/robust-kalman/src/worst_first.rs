@@ -1,20 +1,20 @@
-//! One outlier after the other, each at the cost of one update.
+//! Treatment of one outlier after the other, each at the cost of one update.
 
 use crate::pass::Passed;
 use crate::update::Run;
 use crate::{AnyFactor, AnyScale, Decision, Error, Reason, WeightFunction};
 use kestirim_scalar::{Components, Scalar};
 
-/// Epoch whose measurements were judged.
+/// An epoch whose measurements have been judged.
 pub(crate) struct Judged<T> {
     pub(crate) passed: Passed<T>,
-    /// σ̂0 if it is that of the innovations.
+    /// σ̂0 if it comes from the innovations.
     pub(crate) known: Option<T>,
-    /// σ̂0.
+    /// σ̂0 as last used.
     pub(crate) scale: T,
 }
 
-/// What was released from the estimate since the last pass.
+/// What has been released from the estimate since the last pass.
 #[derive(Clone, Copy, PartialEq)]
 enum Released {
     None,
@@ -22,23 +22,23 @@ enum Released {
     Rejected,
 }
 
-/// Largest error of the residuals of all others, σ, that a release may leave behind.
+/// Largest error, σ, that a release may leave behind in the residuals of the others.
 const MOST_LEFT: f64 = 1.0 / 1024.0;
-/// Least share of the sum of squares that remains: below it rounding would be all of it.
+/// Smallest share of the sum of squares that may remain: below it, the remainder would be nothing but rounding.
 const LEAST_NIS: f64 = 1.0 / 1024.0;
 
 impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const N: usize>
     Run<'_, '_, T, W, S, A, N>
 {
-    /// Treats the worst alone, again and again. While others are suspected it is only released from the
-    /// estimate, which is one update; when none is left, everything is computed anew and judged once more.
+    /// Treats the worst measurement alone, repeatedly. While others are suspected, it is only released from the
+    /// estimate, which costs one update; when none is left, everything is computed anew and judged once more.
     pub(crate) fn worst_first(
         &mut self,
         most: usize,
         mut judged: Judged<T>,
         decisions: &mut [Decision<T>],
     ) -> Result<T, Error> {
-        // Each is treated once.
+        // Each measurement is treated at most once.
         let mut treatable = most.min(decisions.len());
         let mut released = Released::None;
         loop {
@@ -48,7 +48,7 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const N: 
             let weight = place.as_ref().and_then(|decision| self.robust.lighter(decision));
             if let (Some(index), Some(place), Some(weight)) = (worst, place, weight) {
                 let rejected = weight <= T::ZERO;
-                // What pulled hard leaves rounding behind, which a weight would show.
+                // A rejected outlier leaves rounding behind when released, which would affect a reduced weight.
                 if rejected || released != Released::Rejected {
                     place.lose(weight);
                     treatable -= 1;
@@ -70,11 +70,11 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const N: 
         }
     }
 
-    /// Takes what a treated measurement has lost of its weight out of the estimate, and from the residuals
-    /// and redundancies of the others what follows. R/γ instead of R is as if a measurement of the variance
-    /// −R/(1 − γ) had come, too: its S is negative, P grows. Returns whether that was possible, and exact enough: what
-    /// is treated is never judged again.
-    #[inline(never)] // Where nothing is wrong, its registers are not in the way.
+    /// Removes from the estimate what a treated measurement has lost of its weight, and corrects the residuals and
+    /// redundancies of the others. R/γ in place of R is equivalent to another measurement of variance −R/(1 − γ): its S
+    /// is negative, and P grows. Returns whether that was possible and exact enough: a treated measurement is never
+    /// judged again.
+    #[inline(never)] // Keeps its registers out of the path without outliers.
     fn release(
         &mut self,
         index: usize,
@@ -88,7 +88,7 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const N: 
         // R/(1 − γ) − h P⁺ hᵀ.
         let variance = measurement.variance;
         let left = variance / (T::ONE - weight) - (variance - redundancy * variance);
-        // Rounding is magnified by R over this: where little is left, a pass is more exact.
+        // Rounding is magnified by R over this value: where little is left, a pass is more exact.
         if !(left.is_finite() && left * T::from_f64(8.0) > variance) {
             return false;
         }
@@ -130,8 +130,9 @@ impl<T: Scalar, W: WeightFunction<T>, S: AnyScale<T>, A: AnyFactor<T>, const N: 
 }
 
 impl<T: Scalar, W, S, A, const N: usize> Run<'_, '_, T, W, S, A, N> {
-    /// Relative error of the posterior covariance: that of N sums, magnified where much became little. Fixed point, whose
-    /// step is the same for large and small numbers, is left to passes.
+    /// Relative error of the posterior covariance: that of N sums, magnified where a variance has shrunk much. In fixed
+    /// point, whose resolution is the same for large and small numbers, releases are ruled out, and passes are made
+    /// instead.
     fn rounding(&self) -> T {
         if !T::SPREADS {
             return T::MAX;
@@ -144,7 +145,7 @@ impl<T: Scalar, W, S, A, const N: usize> Run<'_, '_, T, W, S, A, N> {
     }
 }
 
-/// The index of the measurement that stands out most of those that were judged.
+/// The index of the measurement with the largest statistic among those that were judged.
 fn worst<T: Scalar>(decisions: &[Decision<T>]) -> Option<usize> {
     let mut worst: Option<(usize, T)> = None;
     for (index, decision) in decisions.iter().enumerate() {

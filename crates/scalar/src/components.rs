@@ -2,9 +2,9 @@ use nalgebra::{SMatrix, SVector};
 
 /// The components of a column vector as an array of a size known at compile time.
 ///
-/// nalgebra's own indexing, `v[i]`, keeps a check of its bounds, and with it a panic, wherever the compiler
-/// does not see `i`; of an array it sees the length, so that kernels over `0..N` keep neither. Nothing is
-/// copied, and on the target nothing is left of the call. A `const fn` cannot call a trait and reads the field
+/// nalgebra's own indexing, `v[i]`, keeps a bounds check, and with it a panic, wherever the compiler
+/// does not know `i`. It knows the length of an array, so loops over `0..N` need neither. Nothing is
+/// copied, and the call leaves no code on the target. A `const fn` cannot call a trait, and must read the field
 /// `data.0` itself.
 ///
 /// ```
@@ -40,7 +40,7 @@ impl<T, const N: usize> Components<T, N> for SVector<T, N> {
 
 /// The columns of a matrix as arrays of a size known at compile time: `m.as_columns()[column][row]`.
 ///
-/// For the same reason as [`Components`].
+/// See [`Components`] for why to use it instead of indexing.
 ///
 /// ```
 /// use kestirim_scalar::Columns;

@@ -1,25 +1,25 @@
-//! Double-precision functions without branches, so that a loop over them becomes vector instructions.
+//! Double-precision functions without branches, so that loops over them are vectorised.
 //!
-//! The polynomials interpolate at Chebyshev's nodes (computed with 60 digits); the reductions are Cody and
+//! The polynomials interpolate at Chebyshev nodes (computed with 60 digits); the reductions are Cody and
 //! Waite's. Exponentials below 5·10⁻³⁰⁸ are zero, and subnormal arguments count as zero.
 
-/// Added to a number below 2⁵¹ and taken away again, it rounds to an integer; its last bits hold it.
+/// Rounds a number below 2⁵¹ to an integer when added and subtracted again; the low bits of the sum hold the integer.
 const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5 · 2⁵²
-/// ln 2 in two parts, the first so short that a whole multiple of it is exact.
+/// ln 2 in two parts, the first short enough that its product with a whole number is exact.
 const LN_2_HIGH: f64 = 6.931_471_803_691_238e-1;
 const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
 
-/// √x within one unit in the last place; of zero 0, of what is subnormal too little, and of what is not
-/// finite NaN.
+/// √x within one unit in the last place; 0 for zero, too small for subnormal numbers, and NaN if x is not
+/// finite.
 #[inline(always)]
 pub(crate) fn root(x: f64) -> f64 {
-    // 1/√x within 3.5 % from the bits alone; each of Newton's steps squares that.
+    // 1/√x within 3.5 % from the bits alone; each Newton step squares the error.
     let half = 0.5 * x;
     let mut inverse = f64::from_bits(0x5FE6_EB50_C7B5_37A9_u64.wrapping_sub(x.to_bits() >> 1));
     inverse *= 1.5 - half * inverse * inverse;
     inverse *= 1.5 - half * inverse * inverse;
     inverse *= 1.5 - half * inverse * inverse;
-    // And the last one for √x itself.
+    // The last Newton step is for √x itself.
     let root = x * inverse;
     root + (x - root * root) * (0.5 * inverse)
 }
@@ -39,7 +39,7 @@ pub(crate) fn exp(x: f64) -> f64 {
         1.666_666_666_666_666_9e-1,
         0.5,
     ];
-    // Beyond, the result is infinite; so is that of this.
+    // Beyond 710 the result is infinite, as it is at 710.
     let x = if x > 710.0 { 710.0 } else { x };
     let whole = x * core::f64::consts::LOG2_E + ROUNDER;
     let count = whole - ROUNDER;
@@ -49,7 +49,7 @@ pub(crate) fn exp(x: f64) -> f64 {
         sum = sum * rest + coefficient;
     }
     let value = 1.0 + (rest + rest * rest * sum);
-    // 2^(count − 1), then times two: so that the largest results have an exponent.
+    // 2^(count − 1), and doubled in the end, so that the largest results do not overflow on the way.
     let power = f64::from_bits(whole.to_bits().wrapping_add(1022) << 52);
     if x < -707.5 { 0.0 } else { value * power * 2.0 }
 }
@@ -73,7 +73,7 @@ pub(crate) fn ln(x: f64) -> f64 {
     let exponent = shifted >> 52;
     let mantissa =
         f64::from_bits(x.to_bits().wrapping_sub(exponent << 52).wrapping_add(BIAS << 52));
-    // The integer put into the last bits of 2⁵² is the sum of the two.
+    // An integer placed in the low bits of 2⁵² makes the double 2⁵² + integer.
     let count =
         f64::from_bits(0x4330_0000_0000_0000 | exponent) - (4_503_599_627_370_496.0 + 1023.0);
     let f = mantissa - 1.0;
@@ -89,11 +89,11 @@ pub(crate) fn ln(x: f64) -> f64 {
         count * LN_2_HIGH - ((half_square - (s * (half_square + z * sum) + count * LN_2_LOW)) - f);
     let value = if x < f64::MIN_POSITIVE { f64::NEG_INFINITY } else { value };
     let value = if x < 0.0 { f64::NAN } else { value };
-    // An infinity stays one, and so does NaN.
+    // Infinity and NaN are returned as they are.
     if x <= f64::MAX { value } else { x }
 }
 
-/// The angle of (x, y) within 2.5 units in the last place; NaN where both are infinite.
+/// The angle of (x, y) within 2.5 units in the last place; NaN if both are infinite.
 #[inline(always)]
 pub(crate) fn atan2(y: f64, x: f64) -> f64 {
     const C: [f64; 10] = [
@@ -113,11 +113,11 @@ pub(crate) fn atan2(y: f64, x: f64) -> f64 {
     let (ay, ax) = (y.abs(), x.abs());
     let steep = ay > ax;
     let (small, large) = if steep { (ax, ay) } else { (ay, ax) };
-    // Beyond π/8, what lacks to π/4.
+    // Beyond π/8, the difference from π/4 is computed instead.
     let turned = small > LIMIT * large;
     let (numerator, denominator) =
         if turned { (small - large, small + large) } else { (small, large) };
-    // Of (0, 0) the angle is zero.
+    // The angle of (0, 0) is zero.
     let ratio = numerator / if denominator == 0.0 { 1.0 } else { denominator };
     let z = ratio * ratio;
     let mut sum = C[0];

@@ -1,15 +1,15 @@
-//! The trait for floats: arithmetic is the machine's, functions are libm's or our own, so that host and
+//! The trait for floats: arithmetic is the machine's, functions are libm's or this crate's own, so that host and
 //! target agree bit for bit.
 
 use crate::{Scalar, double, single};
 
-/// 2^exponent for −126 ≤ exponent ≤ 127; beyond, the power at that end.
+/// 2^exponent for −126 ≤ exponent ≤ 127; exponents beyond are clamped.
 #[inline(always)]
 fn power_of_two(exponent: i32) -> f32 {
     f32::from_bits(((exponent.clamp(-126, 127) + 127) as u32) << 23)
 }
 
-/// Whether arithmetic is likely to be the processor's own: what is right either way is chosen by it.
+/// Whether the processor is likely to have this arithmetic itself; chooses between code that is correct either way.
 const HAS_SINGLE: bool = HAS_DOUBLE || cfg!(target_abi = "eabihf");
 const HAS_DOUBLE: bool = cfg!(not(any(target_arch = "arm", target_arch = "riscv32")));
 
@@ -56,13 +56,15 @@ macro_rules! impl_scalar_for_float {
             }
             #[inline]
             fn is_positive(self) -> bool {
-                // Bits of positive numbers are between those of zero and infinity: one comparison.
+                // The bits of positive finite numbers lie between those of zero and infinity, so one comparison
+                // suffices.
                 self.to_bits().wrapping_sub(1) < $float::INFINITY.to_bits() - 1
             }
             #[inline(always)]
             fn all_finite(values: &[Self]) -> bool {
                 if $has_unit {
-                    // Zero times what is not finite is NaN: a sum and one comparison for all. −0 + x is x, and no addition.
+                    // Zero times a number that is not finite is NaN, so one sum and one comparison check all. −0 + x is
+                    // x, which saves an addition.
                     values.iter().fold(-0.0, |sum: $float, value| sum + value * 0.0) == 0.0
                 } else {
                     values.iter().all(|value| value.is_finite())
@@ -160,7 +162,7 @@ macro_rules! impl_scalar_for_float {
 
 // libm's single-precision sine and hypotenuse compute in double precision, which a target without
 // it emulates at ten times the cost; its exponential, logarithm and arc tangent branch, so that a loop over
-// a thousand particles does not become vector instructions. Those are our own.
+// a thousand particles is not vectorised. This crate's own functions replace them.
 impl_scalar_for_float!(
     f32,
     HAS_SINGLE,

@@ -1,5 +1,5 @@
-//! To and from the number types of the `fixed` crate with the same number of fractional bits: the bits
-//! are the same, nothing is rounded.
+//! Conversions to and from the types of the `fixed` crate with the same number of fractional bits. The bits
+//! are the same, so nothing is rounded.
 
 use crate::Fixed;
 use fixed::FixedI32;

@@ -1,11 +1,11 @@
-//! Single-precision functions which never touch double precision.
+//! Single-precision functions that never use double precision.
 
 use core::f32::consts::{FRAC_2_PI, TAU};
 
 use kestirim_arithmetic::sqrt;
 
-/// √(x² + y²); the squares are scaled where they would overflow or vanish. Never inlined: without
-/// an instruction for them, three square roots at every place of use would be half a kilobyte each.
+/// √(x² + y²), with the squares scaled where they would overflow or underflow. Never inlined: without
+/// an instruction for it, the code for three square roots would take half a kilobyte at every call.
 #[inline(never)]
 pub(crate) fn hypot(x: f32, y: f32) -> f32 {
     const SCALE: f32 = 18_446_744_073_709_551_616.0; // 2⁶⁴
@@ -21,7 +21,7 @@ pub(crate) fn hypot(x: f32, y: f32) -> f32 {
     }
 }
 
-/// (sin x, cos x) within 1.3·10⁻⁷ for |x| ≤ 8192; beyond, x itself is known no better than its last bit.
+/// (sin x, cos x) within 1.3·10⁻⁷ for |x| ≤ 8192; beyond, the last bit of x itself limits the accuracy.
 ///
 /// Cody and Waite's reduction by π/2 in three parts, then the polynomials of Moshier's Cephes.
 pub(crate) fn sin_cos(x: f32) -> (f32, f32) {
@@ -32,7 +32,7 @@ pub(crate) fn sin_cos(x: f32) -> (f32, f32) {
     let turns = x * FRAC_2_PI;
     let quadrant = (if turns < 0.0 { turns - 0.5 } else { turns + 0.5 }) as i32;
     let n = quadrant as f32;
-    // π/2 as a sum of which the first two parts times n are exact.
+    // π/2 as a sum of three parts, the first two of which times n are exact.
     let r = ((x - n * 1.570_312_5) - n * 4.837_513e-4) - n * 7.549_79e-8;
     let square = r * r;
     let sine =
@@ -47,13 +47,12 @@ pub(crate) fn sin_cos(x: f32) -> (f32, f32) {
     }
 }
 
-/// An angle beyond 8192 rad in −π..=π; from 2²¹ rad on, where neighbours are a quarter of a radian apart, that of
-/// ±(2²¹ − 2⁻¹⁰) rad.
-/// The remainder of a division would link a kilobyte.
+/// An angle beyond 8192 rad, reduced to −π..=π. From 2²¹ rad on, where adjacent numbers are a quarter of a radian
+/// apart, the result is that of ±(2²¹ − 2⁻¹⁰) rad. The remainder of a division would link a kilobyte.
 #[cold]
 #[inline(never)]
 fn within_a_turn(x: f32) -> f32 {
-    /// 2⁶⁴ / (1024 · 2π): what a step is of a turn, whose whole ones overflow.
+    /// 2⁶⁴ / (1024 · 2π): 2⁻¹⁰ rad in units of 2⁻⁶⁴ turns, so that whole turns overflow and vanish.
     const OF_A_TURN: i64 = 2_867_080_569_611_329;
     // Such an angle is a multiple of 2⁻¹⁰ rad.
     let steps = ((x * 1024.0) as i32).max(-i32::MAX);
@@ -61,17 +60,17 @@ fn within_a_turn(x: f32) -> f32 {
     turn as f32 * (TAU / 4_294_967_296.0)
 }
 
-/// Added to a number below 2²² and taken away again, it rounds to an integer; its last bits hold it.
+/// Rounds a number below 2²² to an integer when added and subtracted again; the low bits of the sum hold the integer.
 const ROUNDER: f32 = 12_582_912.0; // 1.5 · 2²³
-/// ln 2 in two parts, the first so short that a whole multiple of it is exact.
+/// ln 2 in two parts, the first short enough that its product with a whole number is exact.
 const LN_2_HIGH: f32 = 0.693_359_4;
 const LN_2_LOW: f32 = -2.121_944_4e-4;
 
-/// eˣ within 1.2·10⁻⁷ of itself, without branches; below 1.8·10⁻³⁸ zero. Moshier's polynomial
+/// eˣ with a relative error within 1.2·10⁻⁷, without branches; zero below 1.8·10⁻³⁸. Moshier's polynomial
 /// (Cephes).
 #[inline(always)]
 pub(crate) fn exp(x: f32) -> f32 {
-    // Beyond, the result is infinite; so is that of this.
+    // Beyond 89 the result is infinite, as it is at 89.
     let x = if x > 89.0 { 89.0 } else { x };
     let whole = x * core::f32::consts::LOG2_E + ROUNDER;
     let count = whole - ROUNDER;
@@ -82,13 +81,13 @@ pub(crate) fn exp(x: f32) -> f32 {
         * r
         + 0.5;
     let value = 1.0 + (r + r * r * sum);
-    // 2^(count − 1), then times two: so that the largest results have an exponent.
+    // 2^(count − 1), and doubled in the end, so that the largest results do not overflow on the way.
     let power = f32::from_bits(whole.to_bits().wrapping_add(126) << 23);
     if x < -86.9 { 0.0 } else { value * power * 2.0 }
 }
 
-/// ln x within 10⁻⁷ of itself or of one, without branches; a subnormal counts as zero. Moshier's polynomial
-/// (Cephes).
+/// ln x within 10⁻⁷, absolute or relative, whichever is larger, without branches; a subnormal counts as zero. Moshier's
+/// polynomial (Cephes).
 #[inline(always)]
 pub(crate) fn ln(x: f32) -> f32 {
     const C: [f32; 9] = [
@@ -117,11 +116,11 @@ pub(crate) fn ln(x: f32) -> f32 {
     let value = (f + (f * square * sum + count * LN_2_LOW - 0.5 * square)) + count * LN_2_HIGH;
     let value = if x < f32::MIN_POSITIVE { f32::NEG_INFINITY } else { value };
     let value = if x < 0.0 { f32::NAN } else { value };
-    // An infinity stays one, and so does NaN.
+    // Infinity and NaN are returned as they are.
     if x <= f32::MAX { value } else { x }
 }
 
-/// The angle of (x, y) within 3·10⁻⁷, without branches; NaN where both are infinite. Moshier's polynomial
+/// The angle of (x, y) within 3·10⁻⁷, without branches; NaN if both are infinite. Moshier's polynomial
 /// (Cephes).
 #[inline(always)]
 pub(crate) fn atan2(y: f32, x: f32) -> f32 {
@@ -130,11 +129,11 @@ pub(crate) fn atan2(y: f32, x: f32) -> f32 {
     let (ay, ax) = (y.abs(), x.abs());
     let steep = ay > ax;
     let (small, large) = if steep { (ax, ay) } else { (ay, ax) };
-    // Beyond π/8, what lacks to π/4.
+    // Beyond π/8, the difference from π/4 is computed instead.
     let turned = small > LIMIT * large;
     let (numerator, denominator) =
         if turned { (small - large, small + large) } else { (small, large) };
-    // Of (0, 0) the angle is zero.
+    // The angle of (0, 0) is zero.
     let ratio = numerator / if denominator == 0.0 { 1.0 } else { denominator };
     let z = ratio * ratio;
     let sum = ((8.053_744_5e-2 * z - 1.387_768_5e-1) * z + 1.997_771_1e-1) * z - 3.333_295e-1;

@@ -2,11 +2,11 @@ use core::ops::{Add, Div, Mul, Sub};
 use core::ops::{AddAssign, DivAssign, MulAssign, Neg, SubAssign};
 use num_traits::{One, Zero};
 
-/// A real number an estimator can be built on: `f32`, `f64` or [`Fixed`](crate::Fixed).
+/// A real number type for estimators: `f32`, `f64` or [`Fixed`](crate::Fixed).
 ///
-/// Everything is total: no operation panics. What a float answers with an infinity or a NaN,
-/// fixed point answers with one of its two rails ([`Scalar::MIN`], [`Scalar::MAX`]), and
-/// [`Scalar::is_finite`] tells both.
+/// All operations are total: none panics. Where a float returns an infinity or a NaN,
+/// fixed point returns one of its two rails ([`Scalar::MIN`], [`Scalar::MAX`]), and
+/// [`Scalar::is_finite`] detects both.
 pub trait Scalar:
     nalgebra::Scalar
     + Copy
@@ -24,10 +24,10 @@ pub trait Scalar:
     + MulAssign
     + DivAssign
 {
-    /// A sum of products, wider than `Self`: fixed point rounds once when it is finished.
+    /// A sum of products, wider than `Self`: fixed point rounds it once, when it is finished.
     type Accumulator: nalgebra::Scalar + Copy;
-    /// A divisor prepared once for several quotients, over the whole range of `Self`: the reciprocal
-    /// for floats, mantissa and shift for fixed point (whose reciprocal of a small number would
+    /// A divisor prepared once for several quotients, over the whole range of `Self`. It is the reciprocal
+    /// for floats, and mantissa and shift for fixed point (where the reciprocal of a small number would
     /// overflow).
     type Divisor: Copy + PartialEq + core::fmt::Debug;
 
@@ -39,84 +39,86 @@ pub trait Scalar:
     const HALF: Self;
     /// 2.
     const TWO: Self;
-    /// π, rounded.
+    /// π, rounded to the nearest value.
     const PI: Self;
     /// The distance from 1 to the next larger value.
     const EPSILON: Self;
-    /// The smallest value: the lower rail.
+    /// The smallest value, the lower rail of fixed point.
     const MIN: Self;
-    /// The largest value: the upper rail.
+    /// The largest value, the upper rail of fixed point.
     const MAX: Self;
-    /// Whether sums and products with what is not finite are not finite either: true of floats; fixed point may leave a rail.
+    /// Whether numbers that are not finite make sums and products not finite either. True for floats; fixed point may
+    /// leave a rail.
     const SPREADS: bool = false;
 
-    /// The nearest value; out of range saturates. NaN becomes NaN, or the lower rail in fixed point.
+    /// The nearest value; saturates if out of range. NaN becomes NaN, or the lower rail in fixed point.
     ///
-    /// With a constant argument it folds to a constant: no double-precision code reaches the target.
+    /// A constant argument is folded to a constant, so that no double-precision code reaches the target.
     fn from_f64(value: f64) -> Self;
-    /// The exact value (fixed point with up to 31 fractional bits fits a double).
+    /// The exact value as a double (which holds fixed point with up to 31 fractional bits).
     fn to_f64(self) -> f64;
-    /// The nearest value to an `f32`, in single precision only (drivers and logs deliver `f32`).
+    /// The value nearest to an `f32`, computed in single precision only (drivers and logs deliver `f32`).
     fn from_f32(value: f32) -> Self;
     /// The nearest `f32`.
     fn to_f32(self) -> f32;
-    /// `value · 10⁻⁶`, rounded once: microseconds to seconds without double precision.
+    /// `value · 10⁻⁶`, rounded once: converts microseconds to seconds without double precision.
     fn from_micro(value: i32) -> Self;
 
-    /// `value · 2^exponent`, rounded once; −126 ≤ exponent ≤ 127. What integers have computed, such as random
-    /// numbers, becomes a scalar.
+    /// `value · 2^exponent`, rounded once, for −126 ≤ exponent ≤ 127. Converts the results of integer computations,
+    /// such as random numbers.
     fn from_binary(value: i32, exponent: i32) -> Self;
-    /// The integer nearest to `self · 2^−exponent`; saturates, and of NaN it is 0 or the lower rail.
+    /// The integer nearest to `self · 2^−exponent`; saturates. NaN gives 0; the lower rail, which stands for it in
+    /// fixed point, converts like any number.
     fn to_binary(self, exponent: i32) -> i32;
 
-    /// False for NaN and infinities; for the two rails in fixed point.
+    /// Whether the value is neither NaN nor infinite; in fixed point, whether it is on neither rail.
     fn is_finite(self) -> bool;
 
-    /// Whether it is finite and more than zero.
+    /// Whether the value is finite and above zero.
     #[inline]
     fn is_positive(self) -> bool {
         self.is_finite() && self > Self::ZERO
     }
 
-    /// Whether all of them are finite.
+    /// Whether all values are finite.
     #[inline(always)]
     fn all_finite(values: &[Self]) -> bool {
         values.iter().all(|value| value.is_finite())
     }
 
-    /// |x|; saturates.
+    /// |x|, saturating.
     fn abs(self) -> Self;
-    /// The smaller of two; `self` where either is NaN.
+    /// The smaller of two values; `self` if either is NaN.
     #[inline]
     fn min(self, other: Self) -> Self {
         if other < self { other } else { self }
     }
-    /// The larger of two; `self` where either is NaN.
+    /// The larger of two values; `self` if either is NaN.
     #[inline]
     fn max(self, other: Self) -> Self {
         if other > self { other } else { self }
     }
-    /// Within `low..=high`; NaN stays NaN.
+    /// The nearest value in `low..=high`; NaN stays NaN.
     #[inline]
     fn clamp(self, low: Self, high: Self) -> Self {
         self.max(low).min(high)
     }
 
-    /// √x; of a negative number NaN, or the lower rail in fixed point.
+    /// √x; NaN for a negative number, or the lower rail in fixed point.
     fn sqrt(self) -> Self;
     /// √(x² + y²) without intermediate overflow.
     fn hypot(self, other: Self) -> Self;
-    /// √(Σ xᵢ²), for lengths of everyday size: where a square overflows or vanishes, so does the float's
-    /// result ([`Scalar::hypot`] is more careful, and slower).
+    /// √(Σ xᵢ²), for lengths of everyday size: where a square overflows or underflows, so does the result of
+    /// a float ([`Scalar::hypot`] avoids that, but is slower).
     fn norm<const N: usize>(components: &[Self; N]) -> Self;
-    /// The logarithm of that norm, without its square root.
+    /// The natural logarithm of [`Scalar::norm`], without its square root.
     fn ln_norm<const N: usize>(components: &[Self; N]) -> Self;
-    /// 1/x; of zero an infinity, or the upper rail in fixed point.
+    /// 1/x; infinity for zero, or the upper rail in fixed point.
     fn recip(self) -> Self;
-    /// Prepares `self` as the divisor of [`Scalar::divided_by`]; any number will do, zero too.
+    /// Prepares `self` as the divisor of [`Scalar::divided_by`]; every value is allowed, also zero.
     fn divisor(self) -> Self::Divisor;
-    /// `self / divisor`, rounded within one or two units in the last place; by a zero divisor as `/`.
-    /// A multiplication, where the division was paid for once in [`Scalar::divisor`].
+    /// `self / divisor`, rounded within one or two units in the last place; division by zero is as with `/`.
+    /// It costs a multiplication, as [`Scalar::divisor`] has already paid for the division.
     fn divided_by(self, divisor: Self::Divisor) -> Self;
     /// (sin x, cos x), x in radians.
     fn sin_cos(self) -> (Self, Self);
@@ -124,13 +126,13 @@ pub trait Scalar:
     fn atan2(self, other: Self) -> Self;
     /// eˣ.
     fn exp(self) -> Self;
-    /// ln x; of zero −∞ or the lower rail, of a negative number NaN or the lower rail.
+    /// ln x; −∞ or the lower rail for zero, NaN or the lower rail for a negative number.
     fn ln(self) -> Self;
 
-    /// A bound on the error that `count` roundings leave in a result no larger than `self`.
+    /// A bound on the error of `count` roundings in a result no larger than `self`.
     ///
-    /// A rounding of floats errs by ε·|x| at most, with the operands' own last bits. In fixed point
-    /// it errs by half a unit in the last place; so does the other factor of a product, which counts
+    /// A rounding of floats errs by at most ε·|x|, including the last bits of the operands. In fixed point
+    /// it errs by half a unit in the last place, and so does the other factor of a product, whose error counts
     /// |x| times.
     fn rounding(self, count: u16) -> Self;
 
@@ -138,23 +140,26 @@ pub trait Scalar:
     fn accumulator() -> Self::Accumulator;
     /// `sum + a · b`, exact in fixed point.
     fn mac(sum: Self::Accumulator, a: Self, b: Self) -> Self::Accumulator;
-    /// The sum, rounded once; saturates.
+    /// The sum as a value, rounded once and saturating.
     fn finish(sum: Self::Accumulator) -> Self;
 
-    /// By how many bits coefficients can be scaled up whose magnitudes add up to less than 2^exponent, so that
-    /// sums of their products keep more digits than `Self` has; for [`Scalar::advanced`]. In fixed point as many as
-    /// fit: the sum cannot saturate then, whatever the other factors. For floats 0. `None` if the coefficients
-    /// do not fit as they are.
+    /// Number of bits by which coefficients can be scaled up, if their magnitudes add up to less than 2^exponent, for
+    /// use with [`Scalar::advanced`].
+    ///
+    /// Scaled sums of products keep more digits than `Self` has. In fixed point it is as many bits as fit: the sum
+    /// cannot saturate then, whatever the other factors. It is 0 for floats, and `None` if the coefficients do not even
+    /// fit unscaled.
     fn headroom(exponent: i32) -> Option<u32>;
-    /// [`Scalar::mac`] for coefficients scaled by [`Scalar::headroom`], whose sum needs no watching: beyond it, fixed
-    /// point wraps around. A third of the instructions on a Cortex-M4.
+    /// [`Scalar::mac`] for coefficients scaled by [`Scalar::headroom`], whose sum cannot overflow: without a check,
+    /// fixed point would wrap around beyond. It takes a third of the instructions on a Cortex-M4.
     #[inline(always)]
     fn mac_within(sum: Self::Accumulator, a: Self, b: Self) -> Self::Accumulator {
         Self::mac(sum, a, b)
     }
-    /// `self + sum · 2^−shift`, rounded once and saturating, and what the rounding has left of the sum: the next sum
-    /// begins with it, so that steps below the last place add up. The shift is a [`Scalar::headroom`] (floats
-    /// ignore it).
+    /// `self + sum · 2^−shift`, rounded once and saturating, and the remainder of the sum after rounding.
+    ///
+    /// Starting the next sum with the remainder lets steps below the last place add up. The shift is a
+    /// [`Scalar::headroom`] (floats ignore it).
     fn advanced(self, sum: Self::Accumulator, shift: u32) -> (Self, Self::Accumulator);
 
     /// Σ aᵢ·bᵢ with one rounding in fixed point.

@@ -1,10 +1,10 @@
-//! Reproducible randomness: a seed and an index give a stream, whatever thread asks for it.
+//! Reproducible randomness: a seed and an index determine a stream, independently of the thread.
 
 use rand_core::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal, StandardUniform};
 use rand_xoshiro::{SplitMix64, Xoshiro256PlusPlus};
 
-/// The generator of trial number `index` of the experiment with this `seed`.
+/// The random generator for trial number `index` of the experiment with this `seed`.
 pub fn stream(seed: u64, index: u64) -> Xoshiro256PlusPlus {
     // The seed is scrambled before the index is mixed in, so that neighbouring seeds do not share
     // streams.
@@ -12,18 +12,18 @@ pub fn stream(seed: u64, index: u64) -> Xoshiro256PlusPlus {
     Xoshiro256PlusPlus::seed_from_u64(key ^ index)
 }
 
-/// Uniform in 0 ≤ u < 1.
+/// A uniformly distributed number in 0 ≤ u < 1.
 pub fn uniform<R: Rng + ?Sized>(rng: &mut R) -> f64 {
     StandardUniform.sample(rng)
 }
 
-/// A normally distributed number of mean zero.
+/// A normally distributed number with zero mean.
 pub fn normal<R: Rng + ?Sized>(rng: &mut R, sigma: f64) -> f64 {
     let unit: f64 = StandardNormal.sample(rng);
     sigma * unit
 }
 
-/// Three independent normally distributed numbers of mean zero.
+/// Three independent normally distributed numbers with zero mean.
 pub fn normal3<R: Rng + ?Sized>(rng: &mut R, sigma: f64) -> [f64; 3] {
     std::array::from_fn(|_| normal(rng, sigma))
 }

@@ -1,5 +1,5 @@
-//! Radios' stamps against what could be made of them at best (Cramér and Rao): clocks up to 20 ppm wrong, counters that go
-//! round, messages that are lost.
+//! Tests ranging on simulated timestamps against the Cramér–Rao bound: clocks up to 20 ppm off, counters that wrap, and
+//! lost messages.
 
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_simulate::random::{normal, stream, uniform};
@@ -10,9 +10,9 @@ use kestirim_uwb_tracker::{
 };
 use nalgebra::{SMatrix, SVector};
 
-/// No more than this above the bound.
+/// The largest accepted ratio to the bound.
 const WITHIN: f64 = 1.10;
-/// Corners of a room, m.
+/// The corners of a room, at which the anchors are, m.
 const CORNERS: [[f64; 3]; 8] = [
     [0.0, 0.0, 0.3],
     [8.0, 0.0, 2.7],
@@ -23,7 +23,7 @@ const CORNERS: [[f64; 3]; 8] = [
     [8.0, 6.0, 2.7],
     [0.0, 6.0, 0.3],
 ];
-/// Power spectral density of the tag's acceleration, m²/s³.
+/// The power spectral density of the tag's acceleration, m²/s³, the time step, s, and the duration, s.
 const DENSITY: f64 = 0.03;
 const STEP: f64 = 1e-3;
 const SECONDS: f64 = 4.0;
@@ -34,7 +34,7 @@ fn anchors<T: Scalar>() -> Vec<Anchor<T>> {
     CORNERS.map(anchor).to_vec()
 }
 
-/// A tag's way from the middle of the room, every millisecond: white acceleration, in the plane or in space.
+/// The path of a tag from the middle of the room, every millisecond: white acceleration, in the plane or in space.
 struct Way(Vec<[f64; 3]>);
 
 impl Way {
@@ -63,14 +63,15 @@ impl Way {
     }
 }
 
-/// Information filter along the truth: the least covariance of anything that knows the motion's density alone.
+/// A Kalman filter linearised at the truth: the least covariance of any estimator that only knows the density of the
+/// motion.
 struct Bound<const N: usize> {
     covariance: SMatrix<f64, N, N>,
     seconds: f64,
 }
 
 impl<const N: usize> Bound<N> {
-    /// D coordinates, their velocities and, if N = 2 D + 1, a clock that does not walk.
+    /// States for D coordinates, their velocities and, if N = 2 D + 1, a clock offset that does not walk.
     fn new(axes: usize) -> Self {
         let mut covariance = SMatrix::identity() * 1e4;
         for axis in 0..axes {
@@ -109,7 +110,7 @@ impl<const N: usize> Bound<N> {
     }
 }
 
-/// Squares of errors, of what they could be at best, and of what the tracker says.
+/// Sums of squares: of the errors, of the bound, and of the tracker's own standard deviations.
 #[derive(Debug, Default)]
 struct Squares {
     errors: f64,
@@ -150,7 +151,7 @@ fn config<T: Scalar>(sigma: f64) -> Config<T> {
     }
 }
 
-/// Six stamps an exchange, in turn with each of four anchors, with answers of different lengths.
+/// Simulates exchanges of six timestamps with each of four anchors in turn, with unequal reply times.
 fn two_way<T: Scalar>(index: u64, sigma: f64, squares: &mut Squares, ranges: &mut [f64; 2]) {
     const REPLIES: [f64; 2] = [1e-3, 2.5e-3];
     let mut rng = stream(1, index);
@@ -167,7 +168,7 @@ fn two_way<T: Scalar>(index: u64, sigma: f64, squares: &mut Squares, ranges: &mu
         let metres = (SVector::from(place) - SVector::from(corner)).norm();
         let clocks = [&tag, &clocks[anchor]];
         let [a, b, c, d, e, f] = exchange(&mut rng, clocks, (seconds, metres), REPLIES, sigma);
-        // Each of the three messages may be lost, and the exchange with it.
+        // Each of the three messages may be lost, and with it the exchange.
         if (0..3).any(|_| uniform(&mut rng) < 0.05) {
             continue;
         }
@@ -203,7 +204,7 @@ fn six_stamps_are_as_good_as_they_can_be() {
     check::<Q12_20>("Q12.20");
 }
 
-/// What a tag in space hears of eight anchors, 400 messages a second.
+/// Simulates a tag in space that receives eight anchors, 400 messages a second in all.
 fn downlink<T: Scalar>(index: u64, config: Config<T>, squares: &mut Squares) {
     let mut rng = stream(2, index);
     let way = Way::draw(&mut rng, 3);
@@ -257,7 +258,7 @@ fn a_tag_that_only_listens_is_as_good_as_it_can_be() {
     check::<f64>("f64", config(0.1), WITHIN);
     check::<f32>("f32", config(0.1), WITHIN);
     check::<Q12_20>("Q12.20", config(0.1), WITHIN);
-    // Prepared for obstacles and livelier motion, of which there are none here.
+    // A configuration for obstacles and livelier motion, neither of which occurs here.
     check::<f32>("f32, as it comes", Config::uncalibrated(0.0), 1.35);
 }
 
@@ -297,7 +298,8 @@ fn counters_go_round_and_differences_go_on() {
         variances += f64::from(found.variance);
     }
     assert!(rounds >= 16, "each clock at least twice");
-    // Seven tenths of the messages are heard, and nearly each of those was heard by the next sender, or one before.
+    // Seven tenths of the messages are received, and nearly each of those was also received by the next transmitter, or
+    // an earlier one.
     let least = made.iter().min().expect("four quarters");
     assert!(*least as f64 > 0.9 * heard.len() as f64 / 4.0, "{made:?} of {}", heard.len());
     let ratio: f64 = squares / variances;

@@ -2,34 +2,35 @@ use core::fmt;
 
 use crate::Header;
 
-/// What was found, and what was to be loaded.
+/// The snapshot that was found, and the one that was expected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Difference {
-    /// What the snapshot holds.
+    /// Header of the snapshot that was found.
     pub found: Header,
-    /// What was asked for.
+    /// Header of the snapshot that was to be loaded.
     pub expected: Header,
 }
 
-/// Why a snapshot was not stored or loaded.
+/// Reason why a snapshot was not stored or loaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error {
-    /// The buffer has less room than the snapshot needs.
+    /// The buffer is shorter than the snapshot.
     BufferTooShort,
-    /// There are fewer bytes than the snapshot has.
+    /// There are fewer bytes than the snapshot should have.
     TooShort,
-    /// The bytes do not begin as a snapshot of this version of the crate.
+    /// The bytes do not begin like a snapshot of this version of the crate.
     NoSnapshot,
-    /// The checksum is another: the bytes were changed, or not all of them were written.
+    /// The checksum does not match: the bytes were changed, or not all of them were written.
     Torn,
-    /// A snapshot of another estimator, layout, number format or size.
+    /// The snapshot is of another estimator, layout, number format or size.
     Foreign(Difference),
-    /// Values that the estimator cannot have: an index beyond its array, a variance that is negative.
+    /// The snapshot holds values that the estimator cannot have, such as an index beyond its array
+    /// or a negative variance.
     Invalid,
-    /// A number that is none.
+    /// The snapshot holds a float that is NaN or infinite.
     NotFinite,
 }
 

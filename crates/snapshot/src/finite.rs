@@ -1,4 +1,4 @@
-//! Whether all floats of a value are numbers: a format that stores nothing and stops at the first that is not.
+//! Check that all floats of a value are finite, by a format that stores nothing and stops at the first that is not.
 
 use core::fmt;
 
@@ -8,12 +8,12 @@ use serde::ser::{
     SerializeTupleStruct, SerializeTupleVariant, Serializer,
 };
 
-/// Whether all are finite, or −∞ where that is allowed.
+/// Whether all floats are finite, or −∞ if `or_never` allows it.
 pub(crate) fn is_finite(value: &impl Serialize, or_never: bool) -> bool {
     value.serialize(Finite { or_never }).is_ok()
 }
 
-/// A float that is not finite.
+/// Error for a float that is not finite.
 #[derive(Debug)]
 struct NotFinite;
 
@@ -33,20 +33,20 @@ impl serde::ser::Error for NotFinite {
 
 #[derive(Clone, Copy)]
 struct Finite {
-    /// −∞ is the logarithm of a probability: never.
+    /// Whether −∞ is allowed, as the logarithm of a probability of zero.
     or_never: bool,
 }
 
 type Checked = Result<(), NotFinite>;
 
-/// Values without floats.
+/// Accepts values without floats.
 macro_rules! passed {
     ($($method:ident($($argument:ty),*);)*) => {
         $(fn $method(self $(, _: $argument)*) -> Checked { Ok(()) })*
     };
 }
 
-/// What holds other values begins with itself.
+/// Starts a compound value, whose elements are checked by the same serializer.
 macro_rules! begun {
     ($($method:ident($($argument:ty),*);)*) => {
         $(fn $method(self $(, _: $argument)*) -> Result<Self, NotFinite> { Ok(self) })*
@@ -136,7 +136,7 @@ impl Serializer for Finite {
     }
 }
 
-/// What is in a collection is looked at one by one.
+/// Checks the elements of a collection one by one.
 macro_rules! collection {
     ($($trait:ident::$method:ident($($key:ty),*);)*) => {
         $(impl $trait for Finite {

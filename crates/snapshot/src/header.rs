@@ -2,25 +2,25 @@ use core::fmt;
 
 use crate::{Error, Layout, Name, Number};
 
-/// What a snapshot says it holds.
+/// The header of a snapshot, which says what it holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Header {
-    /// The estimator.
+    /// Name of the estimator.
     pub name: Name,
-    /// The version of its layout.
+    /// Version of the estimator's layout.
     pub version: u16,
-    /// The numbers it computes in.
+    /// Number format that the estimator computes in.
     pub number: Number,
-    /// Its sizes.
+    /// Sizes of the estimator, such as the number of its states.
     pub sizes: [u32; 4],
-    /// Bytes of its state.
+    /// Length of the state, in bytes.
     pub length: u32,
 }
 
-/// Begins each snapshot; an erased page is all ones, or all zeros.
+/// First bytes of each snapshot; an erased page is all ones or all zeros.
 const MAGIC: [u8; 2] = *b"kS";
-/// The version of the header itself, and of the encoding of the state.
+/// Version of the header itself and of the encoding of the state.
 const ENVELOPE: u8 = 1;
 
 impl Header {
@@ -36,7 +36,7 @@ impl Header {
         }
     }
 
-    /// Writes it at the beginning of the buffer, if there is room.
+    /// Writes the header at the beginning of the buffer; `None` if there is no room.
     pub(crate) fn write(&self, buffer: &mut [u8]) -> Option<()> {
         let (start, rest) = buffer.split_first_chunk_mut::<4>()?;
         let (name, rest) = rest.split_first_chunk_mut::<{ Name::SIZE }>()?;

@@ -2,26 +2,26 @@ use core::fmt;
 
 use kestirim_scalar::Scalar;
 
-/// What an estimator's stored state is: a snapshot of anything else is refused.
+/// Identification of an estimator's stored state: a snapshot of anything else is refused.
 ///
-/// Whoever changes a field of an estimator, or of what it is made of, raises its [`Layout::VERSION`].
+/// A change to a field of an estimator, or to one of its parts, requires a higher [`Layout::VERSION`].
 pub trait Layout {
-    /// The estimator, as people know it: up to 16 letters, such as `pedestrian/ekf`.
+    /// Name of the estimator for people: up to 16 letters, such as `pedestrian/ekf`.
     const NAME: &'static str;
-    /// Raised with each change of what is stored.
+    /// Version of the stored form, to be raised with each change of it.
     const VERSION: u16;
-    /// Whether all its floats are finite, always. Otherwise it has logarithms of probabilities, and −∞ is loaded, too; NaN
-    /// and +∞ never are.
+    /// Whether all floats of the estimator are always finite. If not, it has logarithms of probabilities, and −∞ is
+    /// loaded, too; NaN and +∞ never are.
     const IS_FINITE: bool = true;
 
-    /// The numbers that it computes in.
+    /// The number format that the estimator computes in.
     fn number() -> Number;
-    /// Its sizes: const parameters such as the number of states, and the [`Name::code`](crate::Name::code) of parts
-    /// that may be exchanged; 0 where there are none.
+    /// Sizes of the estimator: const parameters such as the number of states, and the [`Name::code`](crate::Name::code)
+    /// of parts that may be exchanged; 0 for unused places.
     fn sizes() -> [u32; 4];
 }
 
-/// A format of numbers.
+/// A number format, such as `f32` or Q12.20.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Number(u8);
@@ -29,9 +29,9 @@ pub struct Number(u8);
 impl Number {
     const FIXED: u8 = 0x80;
 
-    /// The format of a scalar.
+    /// The number format of a scalar type.
     pub fn of<T: Scalar>() -> Self {
-        // Of f64 there is nothing left at 2⁻³⁰.
+        // The epsilon of `f64` vanishes at 2⁻³⁰.
         let epsilon = T::EPSILON.to_binary(-30);
         let fraction = 30_u32.saturating_sub(epsilon.unsigned_abs().checked_ilog2().unwrap_or(0));
         let is_fixed = !T::MAX.is_finite();
@@ -65,7 +65,7 @@ impl fmt::Display for Number {
     }
 }
 
-/// Implements [`Layout`]: `[parameters] for estimator as name, version, scalar, [sizes]`, and `, infinite` where
+/// Implements [`Layout`]: `[parameters] for estimator as name, version, scalar, [sizes]`, followed by `, infinite` if
 /// floats may be −∞.
 ///
 /// ```

@@ -17,14 +17,14 @@ use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// The same as in telemetry and in ZIP; without a table of 1 kB.
+/// The checksum of telemetry and ZIP, without a table of 1 kB.
 const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 const CHECKSUM: usize = size_of::<u32>();
 
-/// Bytes of a snapshot beside the state itself.
+/// Bytes of a snapshot in addition to the state itself.
 pub const OVERHEAD: usize = Header::SIZE + CHECKSUM;
 
-/// Stores an estimator in the buffer, and answers with the bytes that hold it.
+/// Stores an estimator in the buffer, and returns the bytes that hold it.
 ///
 /// # Errors
 /// [`Error::BufferTooShort`].
@@ -46,16 +46,16 @@ pub fn store<'a, E: Layout + Serialize>(
     buffer.get(..end + CHECKSUM).ok_or(Error::BufferTooShort)
 }
 
-/// Number of bytes that [`store`] would take just now: it grows and shrinks with what the estimator holds.
+/// The number of bytes that [`store`] would write now; it varies with what the estimator holds.
 ///
 /// # Errors
-/// None that an estimator of kestirim has.
+/// None for the estimators of kestirim.
 pub fn size<E: Layout + Serialize>(estimator: &E) -> Result<usize, Error> {
     let state = postcard::serialize_with_flavor(estimator, postcard::ser_flavors::Size::default());
     state.map(|length| length + OVERHEAD).map_err(|_| Error::BufferTooShort)
 }
 
-/// What a snapshot says it holds; no more is looked at than its header.
+/// The header of a snapshot, which says what it holds; nothing else is examined.
 ///
 /// # Errors
 /// [`Error::TooShort`] and [`Error::NoSnapshot`].
@@ -63,12 +63,12 @@ pub fn header(bytes: &[u8]) -> Result<Header, Error> {
     Header::read(bytes)
 }
 
-/// Loads an estimator; what follows the snapshot in `bytes` (the rest of a page) is not looked at.
+/// Loads an estimator; bytes after the snapshot (the rest of a page) are ignored.
 ///
 /// # Errors
-/// [`Error::TooShort`], [`Error::NoSnapshot`] and [`Error::Torn`] where the bytes are no whole snapshot;
-/// [`Error::Foreign`] where it is of another estimator, layout, number format or size, both named;
-/// [`Error::Invalid`] and [`Error::NotFinite`] where it holds what the estimator cannot be in.
+/// [`Error::TooShort`], [`Error::NoSnapshot`] and [`Error::Torn`] if the bytes are not a complete snapshot;
+/// [`Error::Foreign`] if it is of another estimator, layout, number format or size, naming both;
+/// [`Error::Invalid`] and [`Error::NotFinite`] if it holds values that the estimator cannot have.
 pub fn load<E: Layout + DeserializeOwned + Serialize>(bytes: &[u8]) -> Result<E, Error> {
     let found = Header::read(bytes)?;
     let end =

@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// An estimator's name: up to 16 letters of ASCII.
+/// Name of an estimator: up to 16 ASCII letters.
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Name([u8; Self::SIZE]);
@@ -8,11 +8,11 @@ pub struct Name([u8; Self::SIZE]);
 impl Name {
     pub(crate) const SIZE: usize = 16;
 
-    /// A name; of a longer one the first 16 bytes.
+    /// A name from a string, of which at most the first 16 bytes are kept.
     pub const fn new(name: &str) -> Self {
         let mut letters = [0; Self::SIZE];
         let mut index = 0;
-        // Iterators cannot be used in constants.
+        // Iterators cannot be used in a constant function.
         while index < Self::SIZE && index < name.len() {
             letters[index] = name.as_bytes()[index];
             index += 1;
@@ -20,7 +20,7 @@ impl Name {
         Self(letters)
     }
 
-    /// A number of it, for [`Layout::sizes`](crate::Layout::sizes): FNV-1a (Fowler, Noll and Vo 1991).
+    /// A hash of the name, for [`Layout::sizes`](crate::Layout::sizes): FNV-1a (Fowler, Noll and Vo 1991).
     pub const fn code(self) -> u32 {
         let (mut code, mut index) = (0x811c_9dc5_u32, 0);
         while index < Self::SIZE {
@@ -43,7 +43,7 @@ impl fmt::Display for Name {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let letters = self.0.iter().take_while(|&&byte| byte != 0);
         for &byte in letters {
-            // What was not written by this crate may be anything.
+            // Bytes not written by this crate may be anything.
             let letter = if byte.is_ascii_graphic() { char::from(byte) } else { '?' };
             fmt::Write::write_char(formatter, letter)?;
         }

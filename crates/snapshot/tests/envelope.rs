@@ -1,4 +1,4 @@
-//! What a snapshot says it holds, and what is refused.
+//! The header of a snapshot, and what is refused.
 
 use kestirim_scalar::{Q8_24, Q12_20, Q16_16};
 use kestirim_snapshot::{
@@ -52,7 +52,7 @@ fn stored(estimator: &(impl Layout + Serialize)) -> Vec<u8> {
 fn what_is_stored_is_loaded() {
     let bytes = stored(&MEAN);
     assert_eq!(load(&bytes), Ok(MEAN));
-    // A page goes on behind it.
+    // The rest of the page, after the snapshot, is ignored.
     assert_eq!(load(&[bytes.clone(), vec![0xff; 9]].concat()), Ok(MEAN));
     let header = header(&bytes).unwrap();
     assert_eq!((header.name, header.version), (Name::new("mean"), 3));

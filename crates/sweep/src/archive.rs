@@ -1,4 +1,4 @@
-//! A line a recording.
+//! Tables of the results of recordings, one line each.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -9,33 +9,33 @@ use serde_json::Value as Json;
 use crate::table::{Tail, Writer};
 use crate::{Column, Error, Value};
 
-/// Numbers of a list that become columns of their own; longer ones are left out.
+/// The greatest length of a list whose values become columns of their own; longer lists are left out.
 const FEW: usize = 4;
-/// Columns that every line has, before those of what was reported.
+/// The columns that every line has, before those of its report.
 const FIRST: [&str; 5] = ["recording", "settings", "error", "health", "warnings"];
-/// What a shard has of each set of settings.
+/// The columns that a shard has for each set of settings.
 const OF_CONFIG: [&str; 4] = ["error", "health", "warnings", "report"];
 
-/// What came of a recording with one set of settings.
+/// The result of a recording with one set of settings.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Line {
-    /// Which recording.
+    /// The recording.
     pub recording: String,
-    /// Which settings, as options of the command line.
+    /// The settings, as options of the command line.
     pub settings: String,
-    /// Why nothing came of it, in one sentence; empty if something did.
+    /// Why there is no result, in one sentence; empty if there is one.
     pub error: String,
-    /// How far it can be relied upon.
+    /// How far the result can be relied upon.
     pub health: String,
-    /// What a user should know, sentences separated by a vertical line.
+    /// Warnings for the user: sentences separated by a vertical bar.
     pub warnings: String,
-    /// What is reported for programs.
+    /// The machine-readable report.
     pub report: Json,
-    /// How long it took, s, if that is to be told.
+    /// The time it took, s, if that is to be reported.
     pub seconds: Option<f64>,
 }
 
-/// How many recordings gave what, in words.
+/// The number of lines in each state of health and of those that failed, in words.
 pub fn counts(lines: &[Line]) -> String {
     let mut counts = BTreeMap::new();
     for line in lines {
@@ -46,8 +46,8 @@ pub fn counts(lines: &[Line]) -> String {
     format!("{} lines: {}", lines.len(), counts.join(", "))
 }
 
-/// Columns of a shard's rows, a row a recording: what came of it with each of so many sets of settings. A report is one text,
-/// as other recordings report other things.
+/// The columns of a shard, which has one row per recording: the results with each of `configs` sets of settings. A
+/// report is one text, since different recordings report different things.
 pub fn columns(configs: usize) -> Vec<Column> {
     let of_config = |config: usize| {
         let name = move |name: &str| {
@@ -58,7 +58,7 @@ pub fn columns(configs: usize) -> Vec<Column> {
     [Column::text("recording")].into_iter().chain((0..configs).flat_map(of_config)).collect()
 }
 
-/// The row of a recording.
+/// The row of a recording in a shard.
 pub fn row(lines: &[Line]) -> Vec<Value> {
     let recording = lines.first().map_or("", |line| &line.recording);
     let of_line = |line: &Line| {
@@ -68,7 +68,7 @@ pub fn row(lines: &[Line]) -> Vec<Value> {
     [Value::from(recording)].into_iter().chain(lines.iter().flat_map(of_line)).collect()
 }
 
-/// What a row says, with the settings in their order.
+/// The lines that a row holds, given the settings in their order.
 pub fn lines(row: &[Value], settings: &[String]) -> Vec<Line> {
     let text = |place: usize| row.get(place).map(ToString::to_string).unwrap_or_default();
     let line = |(config, settings): (usize, &String)| {
@@ -81,16 +81,16 @@ pub fn lines(row: &[Value], settings: &[String]) -> Vec<Line> {
     settings.iter().enumerate().map(line).collect()
 }
 
-/// Writes a table: the columns that every line has, then whatever any of them reports, by name.
+/// Writes a table: the columns that every line has, then one for each name in any of their reports.
 ///
 /// # Errors
-/// [`Error::Write`], [`Error::File`] for an ending that is none.
+/// [`Error::Write`]; [`Error::File`] for an unknown file extension.
 pub fn write(path: &Path, lines: &[Line], head: &impl Serialize, tail: &Tail) -> Result<(), Error> {
     let mut columns: Vec<_> = FIRST.map(Column::text).into();
     let flat: Vec<Vec<(String, Value)>> = lines.iter().map(flat).collect();
     for (name, value) in flat.iter().flatten() {
         match columns.iter_mut().skip(FIRST.len()).find(|column| column.name == *name) {
-            // Numbers in one recording and a text in another: a text.
+            // Numbers in one recording and a text in another make a column of texts.
             Some(column) if matches!(value, Value::Text(_)) => *column = Column::text(name),
             Some(_) => {}
             None if matches!(value, Value::Text(_)) => columns.push(Column::text(name)),
@@ -114,7 +114,8 @@ pub fn write(path: &Path, lines: &[Line], head: &impl Serialize, tail: &Tail) ->
     file.finish(tail)
 }
 
-/// The numbers and texts of a report by name: `accuracy.rmse_m`. What says it already is left out, and so are long lists.
+/// The numbers and texts of a report by name, such as `accuracy.rmse_m`. Warnings and health, which have columns of
+/// their own, and long lists are left out.
 fn flat(line: &Line) -> Vec<(String, Value)> {
     fn add(into: &mut Vec<(String, Value)>, name: &str, value: &Json) {
         let below =

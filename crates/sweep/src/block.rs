@@ -1,4 +1,4 @@
-//! What is tried again and again.
+//! Blocks of trials, and the samples they give.
 
 use std::fmt;
 use std::ops::Range;
@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::{Column, Error, Value};
 
-/// What one trial gives by its number: the same number, the same answer, on any machine of a kind.
+/// The result of a trial as a function of its number: the same number gives the same answer on any machine of one kind.
 type Trial<T> = Box<dyn Fn(u64) -> Result<Vec<T>, String> + Send + Sync>;
 
 enum Of {
@@ -15,16 +15,16 @@ enum Of {
     Records(Trial<Value>),
 }
 
-/// Whether what is there is enough.
+/// Whether the samples so far are enough.
 type Enough = Box<dyn Fn(&Samples) -> bool + Send + Sync>;
 
-/// Trials of one kind: each gives a row of the same columns.
+/// Trials of one kind, each of which gives a row with the same columns.
 pub struct Block {
-    /// Its name among the blocks of a study.
+    /// The name of the block, among those of a study.
     pub name: String,
-    /// What a row holds.
+    /// The columns of a row.
     pub columns: Vec<Column>,
-    /// How many trials there are, at most.
+    /// The number of trials, at most.
     pub trials: u64,
     of: Of,
     enough: Option<(u64, Enough)>,
@@ -42,7 +42,7 @@ impl fmt::Debug for Block {
 }
 
 impl Block {
-    /// Trials that give numbers, in the order of the columns; what is not a number is missing.
+    /// Trials that give numbers, in the order of the columns; `NaN` is a missing value.
     pub fn new(
         name: impl Into<String>,
         columns: impl IntoIterator<Item = String>,
@@ -54,7 +54,7 @@ impl Block {
         Self { name: name.into(), columns, trials, of, enough: None }
     }
 
-    /// Trials that give texts as well.
+    /// Trials that give numbers and texts.
     pub fn of_records(
         name: impl Into<String>,
         columns: Vec<Column>,
@@ -65,7 +65,8 @@ impl Block {
         Self { name: name.into(), columns, trials, of, enough: None }
     }
 
-    /// Trials beyond those that are enough do not count; it is asked after each portion of so many.
+    /// Ends the block once `enough` says so: it is asked after each portion of `portion` trials, and further trials do
+    /// not count.
     #[must_use]
     pub fn until(
         mut self,
@@ -79,7 +80,7 @@ impl Block {
     /// The row of a trial.
     ///
     /// # Errors
-    /// Why there is none, in one sentence.
+    /// Why the trial gives no row, in one sentence.
     pub fn row(&self, index: u64) -> Result<Vec<Value>, String> {
         match &self.of {
             Of::Numbers(trial) => Ok(trial(index)?.into_iter().map(Value::from).collect()),
@@ -87,7 +88,7 @@ impl Block {
         }
     }
 
-    /// Numbers of trials, on all threads, in order. Texts that are no numbers are missing.
+    /// The numbers of a range of trials, computed on all threads, in order. Texts that are not numbers become `NaN`.
     fn numbers(&self, range: Range<u64>, done: &(dyn Fn() + Sync)) -> Result<Vec<f64>, Error> {
         let rows: Result<Vec<_>, _> = range
             .into_par_iter()
@@ -104,10 +105,10 @@ impl Block {
         Ok(rows.map_err(Error::Refused)?.concat())
     }
 
-    /// All trials that count, `done` after each.
+    /// Runs all trials that count, and calls `done` after each.
     ///
     /// # Errors
-    /// [`Error::Refused`] with the sentence of a trial that gives nothing.
+    /// [`Error::Refused`] with the sentence of a trial that fails.
     pub fn run(&self, done: &(dyn Fn() + Sync)) -> Result<Samples, Error> {
         let mut samples = Samples::new(self.columns.len());
         let portion = self.enough.as_ref().map_or(self.trials, |(portion, _)| *portion);
@@ -123,7 +124,7 @@ impl Block {
         Ok(samples)
     }
 
-    /// Of all its trials, those that count.
+    /// Reduces the samples of all trials to those that count.
     pub fn counted(&self, mut samples: Samples) -> Samples {
         let Some((portion, enough)) = &self.enough else { return samples };
         let mut counted = Samples::new(samples.width);
@@ -140,7 +141,7 @@ impl Block {
     }
 }
 
-/// Numbers of the trials of a block, in the order of the trials.
+/// The numbers of the trials of a block, in the order of the trials.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Samples {
     width: usize,
@@ -148,22 +149,22 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// None yet, with so many numbers a trial.
+    /// No samples yet, with `width` numbers per trial.
     pub fn new(width: usize) -> Self {
         Self { width: width.max(1), values: Vec::new() }
     }
 
-    /// With the row of the next trial.
+    /// Appends the row of the next trial.
     pub fn push(&mut self, row: impl IntoIterator<Item = f64>) {
         self.values.extend(row);
     }
 
-    /// How many trials.
+    /// The number of trials.
     pub fn len(&self) -> usize {
         self.values.len().checked_div(self.width).unwrap_or(0)
     }
 
-    /// Whether there are none.
+    /// Whether there are no trials.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
@@ -173,7 +174,7 @@ impl Samples {
         self.values.chunks_exact(self.width.max(1))
     }
 
-    /// A number of each trial.
+    /// The numbers of one column, in the order of the trials.
     pub fn column(&self, column: usize) -> Vec<f64> {
         self.rows().filter_map(|row| row.get(column).copied()).collect()
     }

@@ -8,7 +8,7 @@ pub enum Error {
     /// A file or folder cannot be read.
     #[error("{}: cannot be read: {source}", path.display())]
     Read {
-        /// Which.
+        /// The file or folder.
         path: PathBuf,
         /// What the operating system said.
         source: io::Error,
@@ -17,7 +17,7 @@ pub enum Error {
     /// A file cannot be written.
     #[error("{}: cannot be written: {source}", path.display())]
     Write {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// What the operating system said.
         source: io::Error,
@@ -26,7 +26,7 @@ pub enum Error {
     /// A file is not what it should be.
     #[error("{}: {problem}", path.display())]
     File {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// What was found and what was expected.
         problem: String,
@@ -35,15 +35,15 @@ pub enum Error {
     /// A line of a file is not what it should be.
     #[error("{}, line {line}: {problem}", path.display())]
     Line {
-        /// Which.
+        /// The file.
         path: PathBuf,
-        /// Counted from 1.
+        /// The number of the line, counted from 1.
         line: usize,
         /// What was found and what was expected.
         problem: String,
     },
 
-    /// Shards that do not make one whole, a shard that does not exist, a trial that gives nothing.
+    /// Shards that do not form one whole, a shard that does not exist, or a trial that fails.
     #[error("{0}")]
     Refused(String),
 }

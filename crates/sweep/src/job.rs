@@ -1,4 +1,4 @@
-//! Which files a call of a sweep makes, one after the other.
+//! The files that one call of a sweep makes, one after the other.
 
 use std::fs;
 use std::ops::Range;
@@ -8,18 +8,18 @@ use std::time::Duration;
 use crate::table::ENDINGS;
 use crate::{Error, Shard, Work};
 
-/// Shards of a plan that does not say how many.
+/// The number of shards of a plan that does not set it.
 const SHARDS: u64 = 100;
 
-/// Files of shards that are to be there.
+/// The files of the shards that are to be made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Job {
     files: Vec<(Range<u64>, PathBuf)>,
 }
 
 impl Job {
-    /// One shard, or all of them if none is named. A path with an ending is the file, of all rows if no shard is named; one
-    /// without is a folder, which is made.
+    /// The given shard, or all shards if none is given. A path with an extension is the file, which holds all rows if
+    /// no shard is given; a path without one is a folder, which is created.
     ///
     /// # Errors
     /// [`Error::Write`] if the folder cannot be made.
@@ -42,15 +42,15 @@ impl Job {
         Ok(Self { files: files.collect() })
     }
 
-    /// How many rows the files are to have.
+    /// The number of rows in all the files.
     pub fn rows(&self) -> u64 {
         self.files.iter().map(|(range, _)| range.end - range.start).sum()
     }
 
-    /// Makes those that are not there yet; `done` after rows, with their number.
+    /// Makes the files that do not exist yet, and calls `done` with the number of rows each time rows are done.
     ///
     /// # Errors
-    /// As [`Work::is_done`] and [`Work::write`]. What was made before stays.
+    /// Those of [`Work::is_done`] and [`Work::write`]. Files made before the error remain.
     pub fn run(&self, work: &Work, done: &(dyn Fn(u64) + Sync)) -> Result<(), Error> {
         for (range, path) in &self.files {
             if work.is_done(range, path)? {
@@ -62,10 +62,10 @@ impl Job {
         Ok(())
     }
 
-    /// How many shards there are, and about what they cost, in words.
+    /// The number of shards and their approximate computing time, in words.
     ///
     /// # Errors
-    /// As [`Work::estimate`].
+    /// Those of [`Work::estimate`].
     pub fn costs(work: &Work) -> Result<String, Error> {
         let (all, count) = (work.estimate()?, shards(work));
         let each = Duration::from_secs_f64(all.as_secs_f64() / count as f64);

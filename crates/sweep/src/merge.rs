@@ -1,4 +1,4 @@
-//! Shards as one whole, or a sentence that says why they are none.
+//! Merging of shards into one whole, or a sentence on why they do not form one.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use crate::table::{ENDINGS, Reader, Tail, Writer};
 use crate::{Error, Head, Plan, Program, Samples, Value, Work};
 
-/// Shards that are one whole: no hole, no overlap, of one plan, by one program.
+/// Shards that form one whole: without holes or overlaps, of one plan, by one program.
 #[derive(Debug)]
 pub struct Merge {
-    /// In the order of their rows.
+    /// The shards, in the order of their rows.
     shards: Vec<(PathBuf, Head)>,
-    /// What all of them tell at their ends.
+    /// The tails of all shards, taken together.
     pub tail: Tail,
 }
 
@@ -20,20 +20,20 @@ pub struct Merge {
 pub struct Row<'a> {
     /// The number of its study in the plan.
     pub study: usize,
-    /// Its block's place among the blocks of the plan.
+    /// The index of its block among all blocks of the plan.
     pub block: usize,
     /// The number of its trial.
     pub trial: u64,
-    /// What the trial gave, in the order of the block's columns.
+    /// The values of the trial, in the order of the block's columns.
     pub values: &'a [Value],
 }
 
 impl Merge {
-    /// Holds the shards of a folder against each other.
+    /// Opens the shards of a folder and checks them against each other.
     ///
     /// # Errors
-    /// [`Error::Refused`] by name: a hole, an overlap, other plans, another program; [`Error::Read`] and [`Error::File`] for
-    /// what is no shard.
+    /// [`Error::Refused`], naming a hole, an overlap, different plans or another program; [`Error::Read`] and
+    /// [`Error::File`] for files that are not shards.
     pub fn open(folder: &Path) -> Result<Self, Error> {
         let mut shards = Vec::new();
         let mut tail = Tail::default();
@@ -125,15 +125,15 @@ impl Merge {
         }
     }
 
-    /// What was done.
+    /// The plan of the shards.
     pub fn plan(&self) -> Plan {
         self.shards.first().map(|(_, head)| head.plan.clone()).unwrap_or_default()
     }
 
-    /// Hands over each row in the order of a single run.
+    /// Hands each row to `take`, in the order of a single run.
     ///
     /// # Errors
-    /// [`Error::File`] and [`Error::Line`] for rows that are not those of the plan, and whatever `take` finds wrong.
+    /// [`Error::File`] and [`Error::Line`] for rows that are not those of the plan, and the errors of `take`.
     pub fn rows(
         &self,
         work: &Work,
@@ -174,10 +174,10 @@ impl Merge {
         Ok(())
     }
 
-    /// Writes all rows into one file, as one shard would have.
+    /// Writes all rows into one file, as a single shard would have.
     ///
     /// # Errors
-    /// As [`rows`](Self::rows), and [`Error::Write`].
+    /// Those of [`rows`](Self::rows), and [`Error::Write`].
     pub fn write(&self, work: &Work, path: &Path) -> Result<(), Error> {
         let mut file = Writer::create(path, work.columns(), &work.head(&(0..work.rows())))?;
         let mut all = vec![Value::Missing; work.columns().len()];
@@ -197,10 +197,10 @@ impl Merge {
         file.finish(&self.tail)
     }
 
-    /// Hands over the numbers of each study, those of a block after the other, to be folded as a single run folds them.
+    /// Hands the numbers of each study to `fold`, one block after the other, to be folded as a single run folds them.
     ///
     /// # Errors
-    /// As [`rows`](Self::rows).
+    /// Those of [`rows`](Self::rows).
     pub fn studies(
         &self,
         work: &Work,
@@ -233,7 +233,7 @@ impl Merge {
     }
 }
 
-/// Whether a file tells the same place; text files have numbers as texts.
+/// Whether a value in a file equals the expected one; text files hold numbers as texts.
 fn same(found: &Value, told: &Value) -> bool {
     match told {
         Value::Number(number) => found.number() == Some(*number),
@@ -241,7 +241,7 @@ fn same(found: &Value, told: &Value) -> bool {
     }
 }
 
-/// Files of rows in a folder; hidden ones are drafts.
+/// The files of rows in a folder, without the hidden ones, which are drafts.
 fn files(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     let mut paths = Vec::new();
     for entry in fs::read_dir(folder).map_err(Error::read(folder))? {

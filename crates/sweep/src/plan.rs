@@ -1,4 +1,4 @@
-//! What is to be tried: a grid, read from TOML.
+//! Plans: grids of what is to be tried, read from TOML.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,7 +10,7 @@ use toml::{Table, Value};
 
 use crate::{Error, hex};
 
-/// A plan as it is written.
+/// A plan as written in TOML.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct Written {
@@ -34,19 +34,19 @@ enum Texts {
     Several(Vec<String>),
 }
 
-/// What is to be tried: studies, one after the other, each of its trials or of its recordings.
+/// A plan: studies that are carried out one after the other, each made of trials or of recordings.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plan {
-    /// All combinations of what is listed.
+    /// The studies: all combinations of what the plan lists.
     pub studies: Vec<Study>,
-    /// Recordings, each of which goes through every study; none if the studies are experiments.
+    /// The recordings, each of which goes through every study; `None` if the studies are experiments.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub logs: Option<Logs>,
-    /// In how many shards it is done unless told otherwise. It changes nothing of what is done.
+    /// The number of shards, unless set otherwise. It does not affect the results.
     #[serde(skip)]
     pub shards: Option<u64>,
-    /// Where paths begin.
+    /// The folder to which paths are relative.
     #[serde(skip)]
     pub folder: PathBuf,
 }
@@ -55,31 +55,31 @@ pub struct Plan {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Study {
-    /// Which system.
+    /// The name of the system.
     pub system: String,
-    /// Seed of all randomness.
+    /// The seed of all randomness.
     pub seed: u64,
-    /// How many trials; none leaves it to the experiment.
+    /// The number of trials; `None` leaves it to the experiment.
     pub trials: Option<u64>,
-    /// The number type; none leaves it to the system.
+    /// The number type; `None` leaves it to the system.
     pub scalar: Option<String>,
-    /// Settings and their texts, as options of the command line have them.
+    /// The settings and their values, as texts like those of command-line options.
     pub settings: BTreeMap<String, String>,
 }
 
-/// Recordings.
+/// The recordings of a plan.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Logs {
-    /// Where they lie, in order, from the plan's folder.
+    /// Their paths in order, relative to the plan's folder.
     pub paths: Vec<PathBuf>,
-    /// Other files: the option of each, and paths from the plan's folder. `{dir}` stands for the folder of the
-    /// recording, `{stem}` for its name without its ending.
+    /// Other files: paths by the name of their option, relative to the plan's folder. `{dir}` stands for the folder of
+    /// the recording, `{stem}` for its name without the extension.
     pub files: BTreeMap<String, Vec<String>>,
 }
 
 impl Logs {
-    /// The other files of a recording: the option of each, and paths from the plan's folder.
+    /// The other files of a recording: the option of each, and paths relative to the plan's folder.
     pub fn of(&self, path: &Path) -> Vec<(&str, Vec<PathBuf>)> {
         let dir = path.parent().filter(|dir| !dir.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let dir = dir.to_string_lossy();
@@ -97,7 +97,7 @@ impl Plan {
     /// Reads a plan.
     ///
     /// # Errors
-    /// The file, the line, and what was expected there.
+    /// An error that names the file, the line and what was expected there.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let text = fs::read_to_string(path).map_err(Error::read(path))?;
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -160,15 +160,15 @@ impl Plan {
         Ok(Self { studies, logs, shards, folder: folder.to_owned() })
     }
 
-    /// What tells it from another plan: the SHA-256 of what is done, in hexadecimal.
+    /// The identity of the plan: the SHA-256 of everything that affects the results, in hexadecimal.
     pub fn hash(&self) -> String {
-        // A map of texts and numbers is JSON.
+        // Maps of texts and numbers can always be written as JSON.
         let text = serde_json::to_string(self).unwrap_or_default();
         hex(&Sha256::digest(text))
     }
 }
 
-/// What is wrong, and at which byte.
+/// A problem in a plan, and the byte at which it was found.
 struct Complaint {
     at: Option<usize>,
     problem: String,
@@ -180,7 +180,8 @@ impl<T: Into<String>> From<T> for Complaint {
     }
 }
 
-/// Every combination of the lists among the settings, of each config with those that all have in common.
+/// Every combination of the lists among the settings: of each config together with the common settings, which it
+/// overrides.
 fn configs(common: &Table, configs: &[Table]) -> Result<Vec<BTreeMap<String, String>>, Complaint> {
     let none = [Table::new()];
     let configs = if configs.is_empty() { &none } else { configs };
@@ -227,10 +228,10 @@ fn text(name: &str, value: &Value) -> Result<String, Complaint> {
     }
 }
 
-/// Files that a pattern names, from a folder, in order. Hidden ones are left out.
+/// The files that a pattern names, relative to a folder, in order. Hidden ones are left out.
 ///
 /// # Errors
-/// [`Error::Refused`] if it is no pattern or names no file.
+/// [`Error::Refused`] if the pattern is invalid or names no file.
 pub fn matching(pattern: &str, folder: &Path) -> Result<Vec<PathBuf>, Error> {
     find(pattern, folder).map_err(|complaint| Error::Refused(complaint.problem))
 }

@@ -1,4 +1,4 @@
-//! Where rows come from.
+//! The provenance of rows: the program and the files that were read.
 
 use std::env::consts::{ARCH, OS};
 use std::fs::File;
@@ -11,12 +11,12 @@ use sha2::{Digest, Sha256};
 
 use crate::{Error, hex};
 
-/// Which program made something, and for which kind of machine.
+/// The program that made something, and the kind of machine it was built for.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Program {
-    /// Its version.
+    /// The version of the program.
     pub version: String,
-    /// The commit that it was built from, if `KESTIRIM_COMMIT` said so when it was built.
+    /// The commit from which it was built, if `KESTIRIM_COMMIT` was set at that time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
     /// The kind of machine: architecture, system, C library.
@@ -24,7 +24,7 @@ pub struct Program {
 }
 
 impl Program {
-    /// This one.
+    /// This program.
     pub fn this() -> Self {
         let c_library = if cfg!(target_env = "musl") {
             "-musl"
@@ -49,17 +49,17 @@ impl Program {
     }
 }
 
-/// A file that was read.
+/// A file that was read, with its hash.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Input {
-    /// Where it lay, as the plan names it.
+    /// The path, as the plan names it.
     pub path: String,
-    /// Its SHA-256, in hexadecimal.
+    /// The SHA-256 of the file, in hexadecimal.
     pub sha256: String,
 }
 
 impl Input {
-    /// Reads the files that can be read, on all threads.
+    /// Hashes the files that exist, on all threads.
     ///
     /// # Errors
     /// [`Error::Read`].
@@ -71,7 +71,7 @@ impl Input {
         files.map(|(name, path)| Self::of(&path, name)).collect()
     }
 
-    /// Reads a file, which others call `name`, to its end.
+    /// Hashes a file and lists it under `name`.
     ///
     /// # Errors
     /// [`Error::Read`].

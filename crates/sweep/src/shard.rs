@@ -1,32 +1,33 @@
-//! Which part of a plan is done.
+//! Shards: the parts of a plan that are computed separately.
 
 use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
-/// Variables by which engines tell a task its number, what tells the first number and what how many there are.
+/// The environment variables by which job engines tell a task its number, the first number and the number of tasks.
 const ENGINES: [(&str, Option<&str>, Option<&str>); 3] = [
     ("HQ_TASK_ID", None, None),
     ("SLURM_ARRAY_TASK_ID", Some("SLURM_ARRAY_TASK_MIN"), Some("SLURM_ARRAY_TASK_COUNT")),
     ("JOB_COMPLETION_INDEX", None, None),
 ];
 
-/// Shard `index` of `count`: a run of rows one after the other.
+/// Shard `index` of `count`: a contiguous range of rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
-    /// Counted from 0.
+    /// The number of the shard, counted from 0.
     pub index: u64,
-    /// How many there are.
+    /// The number of shards.
     pub count: u64,
 }
 
 impl Shard {
-    /// A shard; none if there is none of that number.
+    /// A shard; `None` if `index` is not below `count`.
     pub fn new(index: u64, count: u64) -> Option<Self> {
         (index < count).then_some(Self { index, count })
     }
 
-    /// Which of `rows`: shards differ by one row at most, and all together are all.
+    /// The range of this shard among `rows` rows. The sizes of shards differ by at most one row, and together they
+    /// cover all rows.
     pub fn range(self, rows: u64) -> Range<u64> {
         let part = |index: u64| {
             (u128::from(rows) * u128::from(index) / u128::from(self.count.max(1))) as u64
@@ -34,11 +35,11 @@ impl Shard {
         part(self.index)..part(self.index + 1)
     }
 
-    /// What an engine's variables say, with the variable's name; none if there is no engine. How many shards there are,
-    /// `count` knows, or else the engine.
+    /// The shard that an engine's variables name, and the name of the variable; `None` without an engine. The number of
+    /// shards is `count` if given, else what the engine says.
     ///
     /// # Errors
-    /// One sentence, if the variable is no number of a shard, or nobody knows how many there are.
+    /// One sentence, if the variable does not hold the number of a shard, or the number of shards is unknown.
     pub fn of_engine(
         variable: impl Fn(&str) -> Option<String>,
         count: Option<u64>,

@@ -1,20 +1,20 @@
-//! What many trials need and is made once.
+//! Values that many trials need and that are made once.
 
 use std::any::{Any, TypeId};
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What is made once for all recordings that need it, one of each type.
+/// Values that are made once for all recordings that need them, one of each type.
 #[derive(Clone, Default)]
 pub struct Shared(Arc<Mutex<HashMap<TypeId, Arc<dyn Any + Send + Sync>>>>);
 
 impl Shared {
-    /// What there is of a type; made by default if there is none.
+    /// The value of type `T`, made by its `Default` if there is none yet.
     pub fn of<T: Default + Send + Sync + 'static>(&self) -> Arc<T> {
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let one = all.entry(TypeId::of::<T>()).or_insert_with(|| Arc::new(T::default()));
-        // It was put there as what it is.
+        // It was stored under its own type, so the downcast succeeds.
         Arc::clone(one).downcast().unwrap_or_default()
     }
 }
@@ -26,7 +26,7 @@ impl fmt::Debug for Shared {
 }
 
 impl PartialEq for Shared {
-    /// It changes nothing of what is read.
+    /// Always true: shared values do not affect what is read.
     fn eq(&self, _: &Self) -> bool {
         true
     }

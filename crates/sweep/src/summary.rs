@@ -1,4 +1,4 @@
-//! What columns of more rows than fit into memory have in common.
+//! Summaries of columns with more rows than fit into memory.
 
 use std::fmt;
 
@@ -7,19 +7,20 @@ use xsum::{Xsum, XsumLarge};
 
 use crate::{Error, Merge, Value, Work};
 
-/// Accuracy of the sketch: its centroids are so many at most, and its ranks are good to about one part in as many.
+/// The accuracy of the sketch: it has at most this many centroids, and its ranks are accurate to about one part in as
+/// many.
 const CENTROIDS: u16 = 500;
 
-/// What the numbers of a column have in common. Sums are exact and rounded once, so in any order the same; quantiles are
-/// those of a t-digest, which are approximate and depend on the order of the rows.
+/// The summary of a column, updated row by row. Sums are exact and rounded once, so they are the same in any order;
+/// quantiles are those of a t-digest, which are approximate and depend on the order of the rows.
 pub struct Summarised {
-    /// Which study of the plan.
+    /// The number of the study in the plan.
     pub study: usize,
-    /// Which block.
+    /// The name of the block.
     pub block: String,
-    /// Which column.
+    /// The name of the column.
     pub name: String,
-    /// How many rows have no number there.
+    /// The number of rows without a finite number in the column.
     pub missing: u64,
     count: u64,
     sum: XsumLarge,
@@ -41,22 +42,22 @@ impl fmt::Debug for Summarised {
     }
 }
 
-/// The numbers themselves.
+/// Statistics of the numbers in a column.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Summary {
-    /// How many numbers there are.
+    /// The number of rows that have a finite number.
     pub count: u64,
-    /// How many rows have none.
+    /// The number of rows that have none.
     pub missing: u64,
-    /// Their mean: the exact sum, rounded, by their number.
+    /// The mean: the exact sum, rounded, divided by the count.
     pub mean: f64,
-    /// Their standard deviation, from exact sums of numbers and of squares.
+    /// The standard deviation, from the exact sums of the numbers and of their squares.
     pub deviation: f64,
-    /// The least.
+    /// The least number.
     pub least: f64,
     /// The 5th, 50th and 95th percentile, approximately.
     pub approximate_percentiles: [f64; 3],
-    /// The greatest.
+    /// The greatest number.
     pub greatest: f64,
 }
 
@@ -85,7 +86,7 @@ impl Summarised {
         };
         self.count += 1;
         self.sum.add(number);
-        // A square and what its rounding leaves: together exact.
+        // A rounded square and its rounding error: together they are exact.
         let square = number * number;
         self.squares.add(square);
         self.squares.add(number.mul_add(number, -square));
@@ -94,7 +95,7 @@ impl Summarised {
         self.sketch.update(number);
     }
 
-    /// What there is by now; none if there is no number.
+    /// The statistics so far; `None` if there is no number.
     pub fn summary(&mut self) -> Option<Summary> {
         let (count, n) = (self.count, self.count as f64);
         let quantiles = self.sketch.quantiles(&[0.05, 0.5, 0.95]).ok().flatten()?;
@@ -114,10 +115,10 @@ impl Summarised {
 }
 
 impl Merge {
-    /// Every column of every block, row by row: in memory that does not grow with the rows.
+    /// Summarises every column of every block, row by row, in memory that does not grow with the rows.
     ///
     /// # Errors
-    /// As [`Merge::rows`].
+    /// Those of [`Merge::rows`].
     pub fn summary(&self, work: &Work) -> Result<Vec<Summarised>, Error> {
         let (mut columns, mut first) = (Vec::new(), Vec::new());
         for (study, block) in work.blocks() {

@@ -1,21 +1,21 @@
-//! What stands in a row.
+//! Values and columns of rows.
 
 use std::fmt;
 
 /// A value of a row.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub enum Value {
-    /// None: an empty field.
+    /// No value: an empty field.
     #[default]
     Missing,
-    /// A number; one that is not a number is missing.
+    /// A number; `NaN` becomes a missing value.
     Number(f64),
     /// A text.
     Text(Box<str>),
 }
 
 impl Value {
-    /// As a number: what is missing is not a number. None if it is a text that is none.
+    /// The value as a number: `NaN` if it is missing, `None` if it is a text that is not a number.
     pub fn number(&self) -> Option<f64> {
         match self {
             Self::Missing => Some(f64::NAN),
@@ -42,7 +42,7 @@ impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Missing => Ok(()),
-            // Beyond, an exponent is shorter.
+            // For larger numbers, an exponent is shorter.
             Self::Number(number) if number.fract() == 0.0 && number.abs() < 1e15 => {
                 write!(f, "{number}")
             }
@@ -52,7 +52,7 @@ impl fmt::Display for Value {
     }
 }
 
-/// What a column holds.
+/// The kind of values in a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Whole numbers from 0 to 2⁵³.
@@ -66,9 +66,9 @@ pub enum Kind {
 /// A column of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Column {
-    /// Its name.
+    /// The name of the column.
     pub name: String,
-    /// What it holds.
+    /// The kind of its values.
     pub kind: Kind,
 }
 

@@ -1,4 +1,4 @@
-//! A plan as rows: which trial of which block is which row, and the file of a shard.
+//! A plan as rows: the row of each trial of each block, and the files of shards.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize};
 use crate::table::{Reader, Tail, Writer};
 use crate::{Block, Column, Error, Input, Kind, Plan, Program, Value};
 
-/// Rows that are computed together.
+/// The number of rows that are computed together.
 const TOGETHER: u64 = 1024;
-/// Blocks of which a trial is timed.
+/// The largest number of blocks whose trials are timed.
 const TIMED: usize = 24;
-/// Trials of a block that are timed.
+/// The number of trials of a block that are timed.
 const TIMES: u64 = 3;
-/// Columns before those of the blocks: which study, which block, which trial.
+/// The number of columns before those of the blocks: study, block and trial.
 const PLACE: usize = 3;
 
 /// A plan with the blocks of its studies: all rows, in the order of studies, blocks and trials.
@@ -30,31 +30,31 @@ pub struct Work {
     columns: Vec<Column>,
 }
 
-/// What a shard's file tells of itself before its rows.
+/// The head of a shard's file, which precedes its rows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Head {
-    /// Which program made it.
+    /// The program that made the file.
     #[serde(flatten)]
     pub program: Program,
     /// [`Plan::hash`].
     pub plan_sha256: String,
-    /// What was to be done.
+    /// The plan.
     pub plan: Plan,
-    /// Seeds of the plan.
+    /// The seeds of the plan.
     pub seeds: Vec<u64>,
-    /// How many rows the plan has.
+    /// The number of rows of the plan.
     pub of: u64,
-    /// The number of its first row.
+    /// The number of the first row in the file.
     pub first: u64,
-    /// How many it has.
+    /// The number of rows in the file.
     pub count: u64,
 }
 
 impl Work {
-    /// The `blocks` of each study of a plan.
+    /// Arranges the `blocks` of each study of a plan as rows.
     ///
     /// # Errors
-    /// [`Error::Refused`] if these are more rows than can be counted, or columns of a block have one name.
+    /// [`Error::Refused`] if there are more rows than can be counted, or two columns of a block have the same name.
     pub fn new(plan: Plan, blocks: Vec<Vec<Block>>) -> Result<Self, Error> {
         let mut columns: Vec<_> = ["study", "block", "trial"].map(Column::number).into();
         columns[0].kind = Kind::Whole;
@@ -89,7 +89,7 @@ impl Work {
         &self.plan
     }
 
-    /// How many rows there are.
+    /// The number of rows.
     pub fn rows(&self) -> u64 {
         self.rows
     }
@@ -99,25 +99,25 @@ impl Work {
         &self.columns
     }
 
-    /// Each study's number and block, in order.
+    /// All blocks in order, each with the number of its study.
     pub fn blocks(&self) -> impl Iterator<Item = (usize, &Block)> {
         self.blocks.iter().map(|(_, study, block)| (*study, block))
     }
 
-    /// Where a row stands: its block's place among all, and its trial.
+    /// The position of a row: the index of its block among all blocks, and its trial.
     pub(crate) fn place(&self, row: u64) -> (usize, u64) {
         let place = self.blocks.partition_point(|(first, ..)| *first <= row).saturating_sub(1);
-        // Blocks without trials begin where the next one does.
+        // A block without trials begins at the same row as the next one; the last of them is taken.
         (place, row - self.blocks[place].0)
     }
 
-    /// In which columns of a file a block's values stand.
+    /// The columns of a file that hold a block's values.
     pub(crate) fn columns_of(&self, block: usize) -> Vec<usize> {
         let place = |column: &Column| self.columns.iter().position(|it| it.name == column.name);
         self.blocks[block].2.columns.iter().filter_map(place).collect()
     }
 
-    /// Study, block and trial of a row, as its first columns have them.
+    /// Study, block and trial of a row, as they stand in its first columns.
     pub(crate) fn told(&self, row: u64) -> [Value; PLACE] {
         let (place, trial) = self.place(row);
         let (_, study, block) = &self.blocks[place];
@@ -135,7 +135,7 @@ impl Work {
         Ok(all)
     }
 
-    /// What the file of a range of rows tells before them.
+    /// The head of the file of a range of rows.
     pub fn head(&self, range: &Range<u64>) -> Head {
         let mut seeds: Vec<_> = self.plan.studies.iter().map(|study| study.seed).collect();
         seeds.sort_unstable();
@@ -151,10 +151,10 @@ impl Work {
         }
     }
 
-    /// Whether the file of a range is there, whole, and by this program of this plan.
+    /// Whether the file of a range exists, is complete, and was made from this plan by this program.
     ///
     /// # Errors
-    /// [`Error::File`] if something else is there, which is left as it is.
+    /// [`Error::File`] if something else is there, which is left unchanged.
     pub fn is_done(&self, range: &Range<u64>, path: &Path) -> Result<bool, Error> {
         if !path.exists() {
             return Ok(false);
@@ -174,11 +174,11 @@ impl Work {
         ))
     }
 
-    /// Computes a range of rows on all threads and writes its file; `done` after each row.
+    /// Computes a range of rows on all threads and writes its file; `done` is called after each row.
     ///
     /// # Errors
-    /// [`Error::Refused`] with the sentence of a trial that gives nothing, [`Error::Write`], and [`Error::Read`] of a
-    /// recording; then no file is there.
+    /// [`Error::Refused`] with the sentence of a trial that fails, [`Error::Write`], and [`Error::Read`] of a
+    /// recording; in these cases, no file is left.
     pub fn write(
         &self,
         range: Range<u64>,
@@ -205,27 +205,27 @@ impl Work {
         file.finish(&Tail { inputs: self.inputs(&range)?, ..Tail::default() })
     }
 
-    /// Recordings of a range of rows, and the files that all of them need.
+    /// The recordings of a range of rows, and the other files that they need.
     fn inputs(&self, range: &Range<u64>) -> Result<Vec<Input>, Error> {
         let Some(logs) = &self.plan.logs else { return Ok(Vec::new()) };
         let of = range.clone().filter_map(|row| logs.paths.get(self.place(row).1 as usize));
         let with =
             |path: &PathBuf| logs.of(path).into_iter().flat_map(|(_, it)| it).chain([path.clone()]);
-        // What cannot be read is a row that says so.
+        // A recording that cannot be read has a row that says so.
         Input::all(of.flat_map(with).collect(), &self.plan.folder)
     }
 
-    /// Times a few trials of some blocks: what all rows take on one core, about.
+    /// Estimates the time that all rows take on one core, by timing a few trials of some blocks.
     ///
     /// # Errors
-    /// [`Error::Refused`] with the sentence of a trial that gives nothing.
+    /// [`Error::Refused`] with the sentence of a trial that fails.
     pub fn estimate(&self) -> Result<Duration, Error> {
         let counted: Vec<_> = self.blocks().filter(|(_, block)| block.trials > 0).collect();
         let step = counted.len().div_ceil(TIMED).max(1);
         let (mut all, mut tried) = (0.0, 0);
         for (_, block) in counted.iter().step_by(step) {
             let row = |part: u64| block.row(block.trials / (TIMES + 1) * part);
-            // The first finds its code and memory cold.
+            // The first trial, which finds code and memory cold, is not timed.
             row(0).map_err(Error::Refused)?;
             let begun = Instant::now();
             for part in 1..=TIMES {

@@ -6,28 +6,28 @@ use serde::Serialize;
 
 use crate::{Error, Message};
 
-/// The version of a frame on a line of one sender, in its first byte.
+/// The version, in its first byte, of a frame on a line with a single sender.
 pub const VERSION: u8 = 1;
 
-/// The version of a frame that says who sends it ([`encode_from`]). A receiver reads both.
+/// The version of a frame that names its sender ([`encode_from`]). A receiver reads both versions.
 pub const VERSION_OF_FLEETS: u8 = 2;
 
-/// The longest frame of either version, delimiters included, in bytes.
+/// The length of the longest frame of either version, delimiters included, in bytes.
 pub const CAPACITY: usize = cobs::max_encoding_length(CONTENT) + 2 * size_of_val(&DELIMITER);
 
-/// The longest frame of version 1: no stack is taken for what is not sent.
+/// The length of the longest frame of version 1, in bytes, so that no stack is taken for fields that are not sent.
 #[cfg(feature = "embedded-io")]
 pub(crate) const CAPACITY_OF_A_LINE: usize =
     cobs::max_encoding_length(Envelope::POSTCARD_MAX_SIZE + CHECKSUM) + 2 * size_of_val(&DELIMITER);
 
-/// Bytes of the longest frame before they are stuffed.
+/// The length of the longest frame before COBS stuffing, in bytes.
 pub(crate) const CONTENT: usize = EnvelopeOfFleets::POSTCARD_MAX_SIZE + CHECKSUM;
 
 pub(crate) const CHECKSUM: usize = size_of::<u32>();
 pub(crate) const CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 const DELIMITER: u8 = 0;
 
-/// Part of a frame that the CRC checks.
+/// The part of a frame of version 1 that the CRC covers.
 #[derive(Serialize, MaxSize)]
 struct Envelope {
     version: u8,
@@ -36,7 +36,7 @@ struct Envelope {
     message: Message,
 }
 
-/// The same in a fleet.
+/// The part of a fleet's frame that the CRC covers.
 #[derive(Serialize, MaxSize)]
 struct EnvelopeOfFleets {
     version: u8,
@@ -46,20 +46,20 @@ struct EnvelopeOfFleets {
     message: Message,
 }
 
-/// Who sends a frame, in a fleet.
+/// The sender of a frame in a fleet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Origin {
-    /// Number of the device; no two have the same.
+    /// The number of the device, which no other device has.
     pub device: u32,
-    /// How often it was switched on: one more each time, kept in flash; or anything else that only grows, such as the
-    /// seconds of a clock that goes on.
+    /// The number of times the device was switched on: one more each time, kept in flash; or anything else that only
+    /// grows, such as the seconds of a clock that keeps running.
     pub boot: u32,
 }
 
-/// Writes a frame into the buffer and answers with the part that is to be sent.
+/// Writes a frame into the buffer and returns the part that is to be sent.
 ///
-/// The sequence number is one more than that of the frame before; after 65535 comes 0.
+/// The sequence number is one more than that of the previous frame; 65535 is followed by 0.
 ///
 /// # Errors
 /// [`Error::BufferTooShort`] if the frame does not fit; [`CAPACITY`] bytes hold any.
@@ -73,13 +73,13 @@ pub fn encode<'a>(
     write(&envelope, buffer)
 }
 
-/// Writes a frame that says who sends it, for lines and ports that many devices share.
+/// Writes a frame that names its sender, for lines and ports that many devices share.
 ///
-/// The sequence number is 0 after each start, and one more each time. Boot and sequence number together only ever grow: a
-/// sender whose number ends counts a boot.
+/// The sequence number is 0 after each start, and one more for each frame. Boot and sequence number together only ever
+/// grow: a sender that runs out of sequence numbers increments its boot number.
 ///
 /// # Errors
-/// As [`encode`].
+/// Those of [`encode`].
 pub fn encode_from<'a>(
     origin: Origin,
     message: &Message,
@@ -103,7 +103,7 @@ fn write<'a>(envelope: &impl Serialize, buffer: &'a mut [u8]) -> Result<&'a [u8]
         .map_err(|_| Error::BufferTooShort)
 }
 
-/// A buffer that stuffs what is pushed, between two delimiters.
+/// A buffer that COBS-encodes what is pushed, between two delimiters.
 struct Stuffed<'a> {
     buffer: &'a mut [u8],
     length: usize,
@@ -117,7 +117,7 @@ impl<'a> Stuffed<'a> {
     fn new(buffer: &'a mut [u8]) -> Result<Self, Error> {
         let mut line = Self { buffer, length: 0, state: EncoderState::default() };
         line.append(DELIMITER)?;
-        // The first code is known only later.
+        // A placeholder: the first code is known only later.
         line.append(0)?;
         Ok(line)
     }

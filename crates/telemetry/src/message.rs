@@ -30,7 +30,8 @@ macro_rules! messages {
 }
 
 impl Message {
-    /// When a measurement was made (µs, the sender's clock); none of what a sender says of its estimate or of itself.
+    /// The time of a measurement (µs, the sender's clock); `None` for what a sender reports of its estimate or of
+    /// itself.
     pub const fn measured_us(&self) -> Option<u64> {
         match self {
             Self::Imu(Imu { time_us, .. })
@@ -52,9 +53,9 @@ messages! {
     Imu {
         /// Time (µs, the sender's clock).
         time_us: u64,
-        /// m/s²; at rest +1 g upwards.
+        /// Specific force (m/s²); at rest +1 g upwards.
         specific_force: [f32; 3],
-        /// rad/s.
+        /// Angular rate (rad/s).
         angular_rate: [f32; 3],
     }
 
@@ -64,7 +65,7 @@ messages! {
         time_us: u64,
         /// Number of the anchor.
         anchor: u16,
-        /// m.
+        /// Range (m).
         range: f32,
     }
 
@@ -74,7 +75,7 @@ messages! {
         time_us: u64,
         /// Position of the drone (m, east, north, up).
         place: [f32; 3],
-        /// dB.
+        /// Path loss (dB).
         loss: f32,
     }
 
@@ -88,21 +89,21 @@ messages! {
         outputs: [f32; 3],
     }
 
-    /// An estimated place near the start or in a room.
+    /// An estimated position near the start or in a room.
     Position {
         /// Time (µs, the sender's clock).
         time_us: u64,
-        /// m, in the estimator's local frame, z up.
+        /// Position (m), in the estimator's local frame, z up.
         position: [f32; 3],
         /// Standard deviation of a horizontal component (m), where the estimator knows it.
         sigma: Option<f32>,
     }
 
-    /// An estimated place on earth.
+    /// An estimated position on earth.
     GlobalPosition {
         /// Time (µs, the sender's clock).
         time_us: u64,
-        /// m, earth-centred and earth-fixed.
+        /// Position (m), earth-centred and earth-fixed.
         position: [f64; 3],
         /// Standard deviation of a component (m), where the estimator knows it.
         sigma: Option<f32>,
@@ -116,23 +117,23 @@ messages! {
         state: [f32; 4],
     }
 
-    /// A stride of the instrumented foot: where it came to stand.
+    /// A stride of the instrumented foot: where the foot came to rest.
     Footprint {
         /// Time (µs, the sender's clock).
         time_us: u64,
-        /// m, in the tracker's earth frame, z up.
+        /// Position (m), in the tracker's earth frame, z up.
         position: [f32; 3],
-        /// Horizontal distance from the footprint before (m).
+        /// Horizontal distance from the previous footprint (m).
         length: f32,
     }
 
-    /// Health of the sender: counts since it began.
+    /// Health of the sender: counts since it started.
     Health {
         /// Time (µs, the sender's clock).
         time_us: u64,
-        /// Measurements that were taken in.
+        /// Measurements that the estimator accepted.
         accepted: u32,
-        /// Measurements that the estimator refused.
+        /// Measurements that the estimator rejected.
         rejected: u32,
         /// Readings that a driver did not deliver.
         failed: u32,

@@ -4,18 +4,19 @@ use crate::Message;
 use crate::frame::{CHECKSUM, CONTENT, CRC, Origin, VERSION, VERSION_OF_FLEETS};
 use crate::sequence::{Order, RESUMED_AFTER, Sequence};
 
-/// A message that arrived.
+/// A received frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Frame {
-    /// Who sent it; none if the frame does not say.
+    /// The sender; `None` if the frame does not name it.
     pub origin: Option<Origin>,
-    /// The sender's count of frames, of 16 bits if the frame does not say whose it is.
+    /// The sequence number, of 16 bits if the frame does not name its sender.
     pub sequence: u32,
-    /// Where that number stands among those before it on the line; none of a frame that says who sent it, as a
-    /// line may have any number of those.
+    /// The place of that number among the earlier ones on the line; `None` for a frame that names its sender, as a line
+    /// may have any number of such senders.
     pub order: Option<Order>,
-    /// CRC-32 of the frame. Of two frames with one number it tells one that came twice from one of another sender.
+    /// CRC-32 of the frame. It tells whether a second frame with the same number is a repetition or comes from another
+    /// sender.
     pub checksum: u32,
     /// Content of the frame.
     pub message: Message,
@@ -27,16 +28,17 @@ pub struct Frame {
 pub struct Counts {
     /// Good frames.
     pub received: u32,
-    /// Pieces between two delimiters that cannot have been a whole frame: cut, too long, or noise.
+    /// Pieces between two delimiters that cannot be whole frames: cut, too long, or noise.
     pub torn: u32,
     /// Frames whose checksum is wrong.
     pub corrupt: u32,
     /// Frames of another version, or with a message that this receiver does not know.
     pub unknown: u32,
     /// Sequence numbers that are missing between those of the good frames: torn, corrupt or never arrived. One that
-    /// comes late, up to 127 numbers, is not lost. Frames that say who sent them are not looked at: they are each device's.
+    /// comes late, by up to 127 numbers, is not lost. Frames that name their sender do not count, as each device
+    /// numbers its own.
     pub lost: u32,
-    /// Good frames whose numbers came before, or do not follow: frames that came twice, or of another sender.
+    /// Good frames whose numbers were seen before or do not follow: frames that came twice, or from another sender.
     pub foreign: u32,
 }
 
@@ -44,7 +46,7 @@ pub struct Counts {
 #[derive(Debug)]
 pub struct Receiver {
     content: [u8; CONTENT],
-    /// May exceed the capacity: then the frame is too long.
+    /// The length of the content so far. It may exceed the capacity: then the frame is too long.
     length: usize,
     state: DecoderState,
     sequence: Sequence,
@@ -69,13 +71,13 @@ impl Receiver {
         }
     }
 
-    /// The frames that end within these bytes. Bytes are read as the iterator is asked: drop it early, and
-    /// what follows the last frame is unread.
+    /// The frames that end within these bytes. Bytes are read as the iterator advances: if it is dropped early, what
+    /// follows the last frame remains unread.
     pub fn frames<'a>(&'a mut self, bytes: &'a [u8]) -> Frames<'a> {
         Frames { receiver: self, bytes: bytes.iter() }
     }
 
-    /// Takes one byte and answers with the frame that it completes, if any.
+    /// Takes one byte and returns the frame that it completes, if any.
     pub fn push(&mut self, byte: u8) -> Option<Frame> {
         match self.state.feed(byte) {
             Ok(DecodeResult::NoData) => None,
@@ -99,12 +101,12 @@ impl Receiver {
         }
     }
 
-    /// Counts so far.
+    /// The counts so far.
     pub const fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Takes the whole content of a frame.
+    /// Checks and reads the complete content of a frame.
     fn take(&mut self, length: usize) -> Option<Frame> {
         let whole = self.content.get(..length).and_then(<[u8]>::split_last_chunk::<CHECKSUM>);
         let Some((checked, checksum)) = whole else {
@@ -143,14 +145,14 @@ impl Counts {
             Order::Foreign => count(&mut self.foreign),
             Order::Resumed { missing } => {
                 self.lost = self.lost.saturating_add(missing.into());
-                // Those before in a row were this sender's, too.
+                // The foreign frames just before were this sender's, too.
                 self.foreign = self.foreign.saturating_sub(u32::from(RESUMED_AFTER) - 1);
             }
         }
     }
 }
 
-/// Who sent a frame, and its number.
+/// The sender of a frame, and the frame's sequence number.
 enum Sender {
     OfTheLine(u16),
     Device(Origin, u32),

@@ -1,35 +1,34 @@
-/// Numbers behind the newest that are remembered: so far may frames overtake each other on their way.
+/// The number of sequence numbers behind the newest that are remembered: frames may overtake each other within them.
 const WINDOW: u16 = u128::BITS as u16;
-/// Foreign numbers in a row that follow each other, until they are followed.
+/// The number of foreign numbers in a row, each following the other, after which they are followed.
 pub const RESUMED_AFTER: u16 = 8;
 
-/// Where the number of a frame stands among those before.
+/// The place of a frame's number among the earlier ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Order {
-    /// Newer than all before.
+    /// Newer than all earlier numbers.
     Newest {
-        /// Numbers that did not come, so far, between the newest before and this one.
+        /// How many numbers between the previous newest and this one have not come so far.
         missing: u16,
     },
     /// A number that was missing.
     Late {
-        /// How far it is behind the newest.
+        /// The distance to the newest number.
         behind: u16,
     },
-    /// A number that came before, or does not follow: of a frame that came twice, of another sender, or of the same
-    /// one that began anew.
+    /// A number that was seen before, or does not follow: of a frame that came twice, of another sender, or of the same
+    /// sender after a restart.
     Foreign,
-    /// The [eighth](RESUMED_AFTER) foreign number in a row, which follow each other: the sender began anew, or many frames are
-    /// missing. From here on these are followed.
+    /// The [eighth](RESUMED_AFTER) foreign number in a row, each following the other: the sender restarted, or many
+    /// frames are missing. From here on these numbers are followed.
     Resumed {
-        /// Numbers that did not come between the newest before and the first of these; none if the sender
-        /// began anew.
+        /// How many numbers between the previous newest and the first of these did not come; 0 if the sender restarted.
         missing: u16,
     },
 }
 
-/// A sender's numbers: the newest, and which of those behind it came.
+/// The numbers of a sender: the newest, and which of those behind it came.
 #[derive(Clone, Copy, Debug)]
 struct Chain {
     newest: u16,
@@ -38,12 +37,12 @@ struct Chain {
 }
 
 impl Chain {
-    /// From this number on: those before are none of it.
+    /// A chain that begins with this number: earlier numbers do not belong to it.
     const fn new(number: u16) -> Self {
         Self { newest: number, came: u128::MAX }
     }
 
-    /// Takes a number in if it is near the newest and did not come before.
+    /// Accepts a number if it is near the newest and was not seen before.
     fn take(&mut self, number: u16) -> Option<Order> {
         let ahead = number.wrapping_sub(self.newest);
         if (1..=WINDOW).contains(&ahead) {
@@ -63,12 +62,12 @@ impl Chain {
 #[derive(Clone, Copy, Debug)]
 struct Rival {
     chain: Chain,
-    /// How many came since one that is followed, and the first of them.
+    /// How many came since the last number of the followed sender; `first` is the first of them.
     count: u16,
     first: u16,
 }
 
-/// Follows the numbers of one sender, and tells those apart that are not its.
+/// Follows the numbers of one sender, and tells those of others apart.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sequence {
     followed: Option<Chain>,
@@ -80,7 +79,7 @@ impl Sequence {
         Self { followed: None, rival: None }
     }
 
-    /// Where the next number stands.
+    /// Classifies the next number.
     pub(crate) fn take(&mut self, number: u16) -> Order {
         let Some(followed) = &mut self.followed else {
             self.followed = Some(Chain::new(number));
@@ -108,7 +107,7 @@ impl Sequence {
         }
         (self.followed, self.rival) = (Some(rival.chain), None);
         let missing = rival.first.wrapping_sub(newest).wrapping_sub(1);
-        // A step back is a sender that began anew.
+        // A step back means that the sender restarted.
         Order::Resumed { missing: if missing < u16::MAX / 2 { missing } else { 0 } }
     }
 }

@@ -11,33 +11,33 @@ pub struct Transmitter<W> {
 }
 
 impl<W: Write> Transmitter<W> {
-    /// A sender that begins with number 0.
+    /// A transmitter whose sequence numbers begin at 0.
     pub const fn new(port: W) -> Self {
         Self { port, next: 0 }
     }
 
-    /// Sends a message. Its number is used up even if it fails, so that the receiver misses it.
+    /// Sends a message. Its sequence number is used up even if this fails, so that the receiver misses it.
     ///
     /// # Errors
-    /// The port's.
+    /// Those of the port.
     pub fn send(&mut self, message: impl Into<Message>) -> Result<(), W::Error> {
         let sequence = self.next;
         self.next = sequence.wrapping_add(1);
         let mut buffer = [0; CAPACITY_OF_A_LINE];
         match encode(&message.into(), sequence, &mut buffer) {
             Ok(frame) => self.port.write_all(frame),
-            // Cannot be: the capacity is that of the longest message.
+            // Cannot happen: the capacity is that of the longest message.
             Err(_) => Ok(()),
         }
     }
 
-    /// The port, when nothing more is to be sent.
+    /// Returns the port, when nothing more is to be sent.
     pub fn release(self) -> W {
         self.port
     }
 }
 
-/// Sends messages over a port that many devices share, numbers them and says whose they are.
+/// Sends messages over a port that many devices share, numbers them and names the device.
 #[derive(Debug)]
 pub struct DeviceTransmitter<W> {
     port: W,
@@ -46,15 +46,15 @@ pub struct DeviceTransmitter<W> {
 }
 
 impl<W: Write> DeviceTransmitter<W> {
-    /// A device that was just switched on: it begins with number 0.
+    /// A transmitter of a device that was just switched on: its sequence numbers begin at 0.
     pub const fn new(port: W, origin: Origin) -> Self {
         Self { port, origin, next: 0 }
     }
 
-    /// Sends a message. Its number is used up even if it fails, so that the receiver misses it.
+    /// Sends a message. Its sequence number is used up even if this fails, so that the receiver misses it.
     ///
     /// # Errors
-    /// The port's.
+    /// Those of the port.
     pub fn send(&mut self, message: impl Into<Message>) -> Result<(), W::Error> {
         let (origin, sequence) = (self.origin, self.next);
         self.next = sequence.wrapping_add(1);
@@ -64,12 +64,12 @@ impl<W: Write> DeviceTransmitter<W> {
         let mut buffer = [0; CAPACITY];
         match encode_from(origin, &message.into(), sequence, &mut buffer) {
             Ok(frame) => self.port.write_all(frame),
-            // Cannot be: the capacity is that of the longest message.
+            // Cannot happen: the capacity is that of the longest message.
             Err(_) => Ok(()),
         }
     }
 
-    /// The port, when nothing more is to be sent.
+    /// Returns the port, when nothing more is to be sent.
     pub fn release(self) -> W {
         self.port
     }

@@ -4,20 +4,20 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::Error;
 
-/// Steps of a model of discrete time that one interval may take.
+/// Largest number of steps of a discrete-time model in one interval.
 const MOST_STEPS: f64 = 1e5;
-/// By this share of its interval a model of discrete time may be off.
+/// Tolerance of an interval, as a share of the discrete-time model's own.
 const TOLERANCE: f64 = 0.1;
 
-/// A linear model of an aircraft near its steady flight: states α (rad), q (rad/s), V (m/s), θ (rad), inputs δe
-/// (rad) and δt (0 to 1), all of them deviations.
+/// A linear model of an aircraft near its steady flight, with states α (rad), q (rad/s), V (m/s), θ (rad) and inputs
+/// δe (rad) and δt (0 to 1), all as deviations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Dynamics {
-    /// ẋ = A x + B u, for intervals of any length.
+    /// Continuous time, ẋ = A x + B u, for intervals of any length.
     Continuous(StateSpace),
-    /// x⁺ = A x + B u, for multiples of one interval.
+    /// Discrete time, x⁺ = A x + B u, for multiples of one interval.
     Discrete {
         /// A and B of one step.
         step: Discrete<4, 2>,
@@ -26,7 +26,7 @@ pub enum Dynamics {
     },
 }
 
-/// x⁺ = A x + B u + w: what a model does in an interval, with inputs that are held.
+/// The model's transition over an interval with held inputs: x⁺ = A x + B u + w.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -38,12 +38,12 @@ pub struct Step {
 }
 
 impl Dynamics {
-    /// Step of the model over `interval` (s), where white noise of these standard deviations (rad; 1) a `sample` (s)
-    /// reaches the inputs δe and δt.
+    /// The step of the model over `interval` (s), with white noise of the standard deviations `noise` (rad; 1) per
+    /// `sample` (s) on the inputs δe and δt.
     ///
     /// # Errors
-    /// [`Error::WrongInterval`] of a model of discrete time; [`Error::Design`] if an argument or the answer is
-    /// not finite, or an interval of continuous time is not positive.
+    /// [`Error::WrongInterval`] for a discrete-time model; [`Error::Design`] if an argument or the result is not
+    /// finite, or an interval of a continuous-time model is not positive.
     pub fn over(&self, interval: f64, sample: f64, noise: &SVector<f64, 2>) -> Result<Step, Error> {
         let variances = SMatrix::from_diagonal(&noise.map(|sigma| sigma * sigma));
         match self {
@@ -65,7 +65,7 @@ impl Dynamics {
     }
 }
 
-/// A sequence of `count` steps, each with noise of this covariance.
+/// Combines `count` steps, each with noise of the covariance `once`.
 fn repeated(step: &Discrete<4, 2>, once: &SMatrix<f64, 4, 4>, count: u32) -> Step {
     let mut all = Discrete { a: SMatrix::identity(), b: SMatrix::zeros() };
     let mut noise = SMatrix::zeros();

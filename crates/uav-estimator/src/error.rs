@@ -1,30 +1,31 @@
 use core::fmt;
 
-/// Reason for which an estimator was not built, or refused a step. An estimate is as it was before the call.
+/// The reason why an estimator was not built, or refused a step. The estimate is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Error {
-    /// An argument is NaN or infinite, or a number is beyond what the scalar holds.
+    /// An argument is NaN or infinite, or a number is out of range for the scalar.
     NotFinite,
-    /// The sample is not later than the one before, by a second at most: by more, the clock was set back.
+    /// The sample is not later than the previous one. If it is more than a second older, the clock was set back
+    /// instead.
     OutOfOrder,
-    /// The gap of so many seconds is longer than a million usual intervals.
+    /// The gap (s) is longer than a million usual intervals.
     Gap(f64),
-    /// A model of discrete time cannot be stepped over this interval: it is no multiple of the model's own
-    /// (within a tenth of it), or more than 100,000 of them.
+    /// A discrete-time model cannot be stepped over this interval: it is not a multiple of the model's own (to within
+    /// a tenth of it), or more than 100,000 of them.
     WrongInterval {
         /// The model's own interval, s.
         own: f64,
         /// The interval asked for, s.
         found: f64,
     },
-    /// All states that a filter has room for are taken, or the output or state that something is to act on is not there.
+    /// All states of a model are used, or the output or state to be acted on does not exist.
     NoRoom,
-    /// Local models do not stand in the order of their airspeeds, or have not the same states, outputs and origin.
+    /// Local models are not in the order of their airspeeds, or differ in states, outputs or origin.
     Grid,
-    /// The model's transition has no inverse, which the current form of the observer needs.
+    /// The model's transition matrix has no inverse, which the current form of the observer requires.
     Singular,
     /// The design was refused.
     Design(kestirim_observer_design::Error),

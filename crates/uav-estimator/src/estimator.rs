@@ -5,8 +5,8 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::{Error, KalmanFilter, Step, Transition};
 
-/// An estimator of samples at one rate, in predictor form: its estimate is what is expected of a sample before the
-/// sample is measured.
+/// An estimator for samples at a constant rate, in predictor form: its estimate is the prediction for the next
+/// sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -18,23 +18,24 @@ use crate::{Error, KalmanFilter, Step, Transition};
     ))
 )]
 pub enum Estimator<T: Scalar, const P: usize> {
-    /// With a constant gain: a Luenberger observer or a steady-state Kalman filter.
+    /// Constant gain: a Luenberger observer or a steady-state Kalman filter.
     ConstantGain(Predictor<T, 4, 2, P>),
-    /// With the gain of a Kalman filter that starts from P₀.
+    /// Time-varying gain of a Kalman filter that starts from P₀.
     TimeVarying {
         /// The filter.
         filter: KalmanFilter<T, P>,
-        /// Step from one sample to the next.
+        /// The step from one sample to the next.
         transition: Transition<T>,
     },
 }
 
 impl<T: Scalar, const P: usize> Estimator<T, P> {
-    /// x̂⁺ = A x̂ + B u + L (y − C x̂) from this state: L is that of an [`observer_gain`](crate::observer_gain), or
-    /// the `predictor_gain` of a [`riccati`](kestirim_observer_design::riccati).
+    /// Creates x̂⁺ = A x̂ + B u + L (y − C x̂) with this initial state, where L is from
+    /// [`observer_gain`](crate::observer_gain), or the `predictor_gain` of
+    /// [`riccati`](kestirim_observer_design::riccati).
     ///
     /// # Errors
-    /// [`Error::Observer`].
+    /// [`Error::NotFinite`] or [`Error::Observer`].
     pub fn constant_gain(
         plant: &Discrete<4, 2>,
         c: &SMatrix<f64, P, 4>,
@@ -48,8 +49,8 @@ impl<T: Scalar, const P: usize> Estimator<T, P> {
         Ok(Self::ConstantGain(Predictor::new(&gains, &start.map(T::from_f64))?))
     }
 
-    /// A [`KalmanFilter`] of outputs y = C x whose noise has these standard deviations, from a state whose errors
-    /// have standard deviations `start_sigmas`.
+    /// Creates a [`KalmanFilter`] for outputs y = C x with noise of the standard deviations `sigmas`, and initial
+    /// errors of the standard deviations `start_sigmas`.
     ///
     /// # Errors
     /// [`Error::NotFinite`].
@@ -64,7 +65,7 @@ impl<T: Scalar, const P: usize> Estimator<T, P> {
         Ok(Self::TimeVarying { filter, transition: Transition::new(step) })
     }
 
-    /// x̂: α (rad), q (rad/s), V (m/s), θ (rad) at the time of the next sample.
+    /// The estimate x̂ at the time of the next sample: α (rad), q (rad/s), V (m/s), θ (rad).
     pub fn estimate(&self) -> SVector<f64, 4> {
         match self {
             Self::ConstantGain(observer) => observer.estimate().map(T::to_f64),
@@ -72,8 +73,8 @@ impl<T: Scalar, const P: usize> Estimator<T, P> {
         }
     }
 
-    /// Standard deviations of the estimate's errors; an observer with a constant gain knows none
-    /// ([`error_covariance`](kestirim_observer_design::error_covariance) tells those it settles at).
+    /// Standard deviations of the estimation errors; `None` for a constant gain (for its steady state see
+    /// [`error_covariance`](kestirim_observer_design::error_covariance)).
     pub fn sigma(&self) -> Option<SVector<f64, 4>> {
         match self {
             Self::ConstantGain(_) => None,
@@ -81,11 +82,11 @@ impl<T: Scalar, const P: usize> Estimator<T, P> {
         }
     }
 
-    /// Moves on with the inputs δe (rad), δt and the outputs of one sample; what was not measured is taken for what
-    /// was expected.
+    /// Steps on with the inputs δe (rad), δt and the outputs of one sample; missing outputs are replaced by their
+    /// predictions.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::Observer`] or [`Error::Estimate`]; the estimator is as it was.
+    /// [`Error::NotFinite`], [`Error::Observer`] or [`Error::Estimate`]; the estimator is unchanged.
     pub fn step(
         &mut self,
         input: &SVector<f64, 2>,
@@ -111,7 +112,7 @@ impl<T: Scalar, const P: usize> Estimator<T, P> {
     }
 }
 
-/// Outputs as measured, and as expected where they are missing.
+/// The outputs as measured, or as predicted where they are missing.
 fn completed<T: Scalar, const P: usize>(
     observer: &Predictor<T, 4, 2, P>,
     measured: &[Option<f64>; P],

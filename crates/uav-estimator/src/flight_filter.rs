@@ -7,19 +7,19 @@ use crate::transitions::{Transitions, interval_us, is_set_back};
 use crate::watch::Watch;
 use crate::{Dynamics, Error, KalmanFilter, Noise, Sample, Transition};
 
-/// Standard deviations of a state of which nothing is known: rad, rad/s, m/s, rad.
+/// Standard deviations of states that are entirely unknown: rad, rad/s, m/s, rad.
 pub(crate) const UNKNOWN: [f64; 4] = [0.2, 0.5, 20.0, 0.5];
 
-/// A Kalman filter along a flight: samples of any times, with gaps between them and outputs that are missing.
+/// A Kalman filter along a flight: samples at any times, with gaps and missing outputs.
 ///
-/// Over a gap the model is moved on by the gap's length, and the uncertainty grows by the noise of the inputs in it.
-/// The estimate has seen the newest sample. It begins at zero deviation with standard deviations of 0.2 rad,
-/// 0.5 rad/s, 20 m/s and 0.5 rad, so that the first samples decide.
+/// Over a gap the model is predicted by the gap's length, and the uncertainty grows by the noise of the inputs in it.
+/// The estimate includes the newest sample. It starts at zero deviation with standard deviations of 0.2 rad, 0.5
+/// rad/s, 20 m/s and 0.5 rad, so that the first samples dominate.
 ///
-/// An output that is more than 5 σ from what was expected of it is left out, as long as that are not more than five in a
-/// row: then it is the estimate that must be wrong, and all are taken in until they agree with it again.
+/// An output whose innovation exceeds 5 σ is rejected, but at most five times in a row: after that the estimate must
+/// be wrong, and all measurements are used until they agree with it again.
 ///
-/// The steps of up to L intervals are kept, the last one for each remainder of an interval's microseconds by L: 336
+/// The steps of up to L intervals are cached, the last one for each remainder of the interval in µs modulo L: 336
 /// bytes each in `f64`. With regular samples one is enough; other intervals are computed anew.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -28,16 +28,16 @@ pub struct FlightFilter<T: Scalar, const P: usize, const L: usize = 1> {
     filter: KalmanFilter<T, P>,
     watch: Watch<P>,
     transitions: Transitions<Dynamics, Transition<T>, L>,
-    /// Time (µs) and input of the sample before.
+    /// Time (µs) and input of the previous sample.
     before: Option<(i64, SVector<f64, 2>)>,
 }
 
 impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
-    /// A filter of this model and outputs y = C x, measured every `usual` seconds: the noise of the inputs is white
-    /// at that rate.
+    /// Creates a filter of this model and outputs y = C x, for samples every `usual` seconds: the noise of the inputs
+    /// is white at that rate.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] of C or the outputs' noise.
+    /// [`Error::NotFinite`] for C or the outputs' noise.
     pub fn new(
         dynamics: &Dynamics,
         c: &SMatrix<f64, P, 4>,
@@ -50,7 +50,7 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
         Ok(Self { filter, watch: Watch::NEW, transitions, before: None })
     }
 
-    /// Says how long an interval usually is, s.
+    /// Sets the usual interval, s.
     pub fn set_usual(&mut self, usual: f64) {
         self.transitions.set_usual(usual);
     }
@@ -60,25 +60,25 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
         &self.filter
     }
 
-    /// How many times each output was left out, because it contradicted the estimate.
+    /// Number of rejections of each output, for contradicting the estimate.
     pub const fn rejected(&self) -> &[u32; P] {
         &self.watch.rejected
     }
 
-    /// Whether the estimate can be relied upon: `innovations` if over about 200 samples the normalised innovations
-    /// squared are more than 2.25 on average, each counted for no more than 10; `rejected` if over about 50 more
-    /// than a tenth of the measurements were left out; `time` if over about 1000 the innovations follow the movement of
-    /// the outputs, as they do if outputs come late or inputs do, by four samples or so.
+    /// Whether the estimate is reliable: reports `innovations` if over about 200 samples the mean normalised
+    /// innovation squared, each limited to 10, exceeds 2.25; `rejected` if over about 50 samples more than a tenth of
+    /// the measurements were rejected; `time` if over about 1000 samples the innovations are correlated with the
+    /// motion of the outputs, as happens if outputs or inputs are late by about four samples.
     pub fn health(&self) -> Health {
         self.watch.health()
     }
 
-    /// Takes in a sample, and answers with what each of its outputs said beyond what was expected of it. One that is
-    /// more than a second older than the one before is not late: the clock was set back, and the filter begins anew.
+    /// Processes a sample, and returns the innovations of its outputs. If it is more than a second older than the
+    /// previous one, the clock was set back, and the filter restarts.
     ///
     /// # Errors
     /// [`Error::OutOfOrder`], [`Error::Gap`], [`Error::WrongInterval`], [`Error::NotFinite`], [`Error::Design`] or
-    /// [`Error::Estimate`]; the filter is as it was.
+    /// [`Error::Estimate`]; the filter is unchanged.
     pub fn take(&mut self, sample: &Sample<P>) -> Result<[Option<Innovation<f64>>; P], Error> {
         if !sample.input.iter().copied().all(f64::is_finite) {
             return Err(Error::NotFinite);

@@ -11,17 +11,16 @@ use crate::monitor::Monitor;
 use crate::transitions::{Transitions, interval_us, is_set_back};
 use crate::{Dynamics, Error, Sample, Step, current_gain, observer_gain};
 
-/// A Luenberger observer along a flight: samples at a usual interval, with gaps between them and outputs that are
-/// missing.
+/// A Luenberger observer along a flight: samples at a usual interval, with gaps and missing outputs.
 ///
-/// Over a gap the model is moved on by the gap's length; an output that is missing is taken for what was expected of
-/// it. The estimate has seen the newest sample (the current form). It begins with the states that the first sample
-/// measures by themselves, and zero for the others. Its error when it has settled is told by
+/// Over a gap the model is predicted by the gap's length; a missing output is replaced by its prediction. The
+/// estimate includes the newest sample (the current form). It starts with the states that the first sample measures
+/// directly, and zero for the others. For its steady-state error see
 /// [`error_covariance`](kestirim_observer_design::error_covariance).
 ///
-/// An output whose innovation is eight times as large as usual is left out, but not more than five in a row.
+/// An output whose innovation is eight times as large as usual is rejected, but at most five times in a row.
 ///
-/// Steps of L other intervals than the usual one are kept: see [`FlightFilter`](crate::FlightFilter).
+/// The steps of L intervals other than the usual one are cached: see [`FlightFilter`](crate::FlightFilter).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -37,19 +36,19 @@ pub struct FlightObserver<T: Scalar, const P: usize, const L: usize = 1> {
     c: SMatrix<f64, P, 4>,
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     gates: [InnovationGate; P],
-    /// How many times each output was left out.
+    /// Number of rejections of each output.
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     rejected: [u32; P],
     monitor: Monitor,
     usual_us: i64,
     transitions: Transitions<Dynamics, Discrete<4, 2>, L>,
-    /// Time (µs) and input of the sample before.
+    /// Time (µs) and input of the previous sample.
     before: Option<(i64, SVector<f64, 2>)>,
 }
 
 impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
-    /// An observer of this model and outputs y = C x, measured every `usual` seconds, with these poles of discrete
-    /// time ([`observer_gain`]).
+    /// Creates an observer of this model and outputs y = C x, for samples every `usual` seconds, with these
+    /// discrete-time poles ([`observer_gain`]).
     ///
     /// # Errors
     /// [`Error::Design`], [`Error::Singular`], [`Error::WrongInterval`], [`Error::Observer`].
@@ -70,30 +69,29 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
         Ok(Self { observer, c: *c, gates, rejected, monitor, usual_us, transitions, before: None })
     }
 
-    /// x̂: α (rad), q (rad/s), V (m/s), θ (rad) at the time of the last sample.
+    /// The estimate x̂ at the time of the last sample: α (rad), q (rad/s), V (m/s), θ (rad).
     pub fn estimate(&self) -> SVector<f64, 4> {
         self.observer.estimate().map(T::to_f64)
     }
 
-    /// How many times each output was left out, because it contradicted the estimate.
+    /// Number of rejections of each output, for contradicting the estimate.
     pub const fn rejected(&self) -> &[u32; P] {
         &self.rejected
     }
 
-    /// Whether the estimate can be relied upon: `rejected` if over about 50 samples more than a tenth of the
-    /// measurements were left out. An observer knows no variances: whether its innovations are too large, or its
-    /// inputs late, only a [`FlightFilter`](crate::FlightFilter) beside it can tell.
+    /// Whether the estimate is reliable: reports `rejected` if over about 50 samples more than a tenth of the
+    /// measurements were rejected. An observer has no variances: whether its innovations are too large, or its inputs
+    /// late, only a [`FlightFilter`](crate::FlightFilter) run in parallel can tell.
     pub fn health(&self) -> Health {
         self.monitor.health()
     }
 
-    /// Takes in a sample, and answers with what each of its outputs said beyond what was expected of it, in its unit.
-    /// One that is more than a second older than the one before is not late: the clock was set back, and the observer
-    /// begins anew.
+    /// Processes a sample, and returns the innovations of its outputs, in their units. If it is more than a second
+    /// older than the previous one, the clock was set back, and the observer restarts.
     ///
     /// # Errors
     /// [`Error::OutOfOrder`], [`Error::Gap`], [`Error::WrongInterval`], [`Error::NotFinite`], [`Error::Design`] or
-    /// [`Error::Observer`]; the observer is as it was.
+    /// [`Error::Observer`]; the observer is unchanged.
     pub fn take(&mut self, sample: &Sample<P>) -> Result<[Option<f64>; P], Error> {
         let numbers = sample.input.iter().chain(sample.measured.iter().flatten());
         if !numbers.copied().all(f64::is_finite) {
@@ -136,7 +134,7 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
         Ok(innovations)
     }
 
-    /// States that outputs measure by themselves, and zero for the others.
+    /// The states that an output measures directly, and zero for the others.
     fn measured_states(&self, measured: &[Option<f64>; P]) -> SVector<f64, 4> {
         let mut states = SVector::<f64, 4>::zeros();
         for output in 0..P {
@@ -153,8 +151,8 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
     }
 }
 
-/// The innovation of each output that was measured, and all outputs as an observer is to take them in: what is missing
-/// or contradicts the estimate is taken for what was expected.
+/// The innovations of the measured outputs, and all outputs as passed to the observer: those missing or contradicting
+/// the estimate are replaced by their predictions.
 fn judged<const P: usize>(
     gates: &mut [InnovationGate; P],
     measured: &[Option<f64>; P],
@@ -173,7 +171,7 @@ fn judged<const P: usize>(
     (innovations, admitted)
 }
 
-/// A state in this scalar, if it is one.
+/// Converts a state to the scalar, if it is finite.
 fn finite<T: Scalar>(state: &SVector<f64, 4>) -> Result<SVector<T, 4>, Error> {
     if state.iter().copied().all(f64::is_finite) {
         Ok(state.map(T::from_f64))

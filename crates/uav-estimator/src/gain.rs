@@ -5,11 +5,12 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::Error;
 
-/// L of x̂⁺ = A x̂ + B u + L (y − C x̂), the observer in predictor form, for these poles of discrete time (within the
-/// unit circle; e^(p h) for a pole p in 1/s at an interval of h seconds).
+/// The gain L of the observer in predictor form, x̂⁺ = A x̂ + B u + L (y − C x̂), for these discrete-time poles.
 ///
-/// Where every state is measured by itself and the poles are real, L = (A − diag(poles)) Cᵀ: each pole is that of one
-/// state's error, which none of the others disturbs (the thesis' observer: its times to catch tell so). Else the poles
+/// The poles are within the unit circle: e^(p h) for a pole p in 1/s and an interval of h seconds.
+///
+/// If every state is measured directly and the poles are real, L = (A − diag(poles)) Cᵀ: each pole is that of one
+/// state's error, undisturbed by the others (the thesis' observer, as its settling times show). Otherwise the poles
 /// are placed where they are least sensitive ([`place`]).
 ///
 /// # Errors
@@ -19,7 +20,7 @@ pub fn observer_gain<const P: usize>(
     c: &SMatrix<f64, P, 4>,
     poles: &[Complex<f64>; 4],
 ) -> Result<SMatrix<f64, 4, P>, DesignError> {
-    // The identity, or one whose transpose is its inverse just as well.
+    // The identity, or any other C whose transpose is its inverse.
     let every_state = P == 4 && c.transpose() * c == SMatrix::<f64, 4, 4>::identity();
     if every_state && poles.iter().all(|pole| pole.im == 0.0) {
         let errors = SMatrix::from_diagonal(&SVector::from(poles.map(|pole| pole.re)));
@@ -28,7 +29,7 @@ pub fn observer_gain<const P: usize>(
     Ok(place(&plant.a, c, poles)?.gain)
 }
 
-/// K = A⁻¹ L of x̂ = x̂⁻ + K (y − C x̂⁻), the observer in current form, with which its poles are those of the
+/// The gain K = A⁻¹ L of the observer in current form, x̂ = x̂⁻ + K (y − C x̂⁻), which has the same poles as the
 /// predictor form with L.
 ///
 /// # Errors

@@ -1,23 +1,23 @@
-//! Gates that leave out spikes, and nothing else.
+//! Gates that reject spikes only.
 
-/// So many measurements in a row are left out at most: more contradictions are the estimate's fault.
+/// Largest number of successive rejections: further contradictions are due to the estimate.
 const PATIENCE: u8 = 5;
 
-/// Leaves out a measurement that contradicts the estimate, unless many before it did: then all are taken in until one
-/// agrees, as if there were no gate.
+/// Rejects a measurement that contradicts the estimate, unless many before it did: then all are admitted until one
+/// agrees, as without a gate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Gate {
-    /// In a row.
+    /// Number of successive rejections.
     rejected: u8,
 }
 
 impl Gate {
-    /// One that nothing has contradicted.
+    /// A gate without rejections.
     pub(crate) const NEW: Self = Self { rejected: 0 };
 
-    /// Whether a measurement is to be taken in.
+    /// Whether a measurement is to be used.
     pub(crate) fn admits(&mut self, contradicts: bool) -> bool {
         let is_left_out = contradicts && self.rejected < PATIENCE;
         if !contradicts {
@@ -27,7 +27,7 @@ impl Gate {
         !is_left_out
     }
 
-    /// Whether too many in a row have contradicted the estimate for another to be left out.
+    /// Whether the gate is open because of too many successive contradictions.
     pub(crate) const fn is_open(self) -> bool {
         self.rejected >= PATIENCE
     }

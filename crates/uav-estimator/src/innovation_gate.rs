@@ -1,17 +1,17 @@
 use crate::gate::Gate;
 
-/// Beyond so many times the usual size of an innovation an output contradicts the estimate: 6.4 σ of Gaussian noise.
+/// Ratio to the usual size of an innovation beyond which an output contradicts the estimate: 6.4 σ of Gaussian noise.
 const LIMIT: f64 = 8.0;
-/// Innovations over which the usual size is averaged.
+/// Number of innovations over which the usual size is averaged.
 const MEMORY: f64 = 64.0;
-/// Innovations from which the usual size is known well enough to judge by it.
+/// Number of innovations after which the usual size is known well enough.
 const FIRST: u8 = 16;
 
-/// A gate for an estimator with a constant gain, which knows no variance: an output is left out whose innovation is
-/// many times as large as innovations usually are.
+/// A gate for an estimator with a constant gain, which has no variance: it rejects outputs whose innovation is many
+/// times as large as usual.
 ///
-/// The usual size is the exponential average of their absolute values, a spike not counted for more than the limit.
-/// While an estimate converges its innovations shrink, and none is left out.
+/// The usual size is the exponential average of the absolute values, where a spike counts no more than the limit.
+/// While an estimate converges, its innovations shrink, and none is rejected.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -22,7 +22,7 @@ pub(crate) struct InnovationGate {
 }
 
 impl InnovationGate {
-    /// Whether an output with this innovation is to be taken in.
+    /// Whether an output with this innovation is to be used.
     pub(crate) fn admits(&mut self, innovation: f64) -> bool {
         let size = innovation.abs();
         if self.seen < FIRST {

@@ -9,11 +9,11 @@ use nalgebra::{SMatrix, SVector};
 use crate::gate::Gate;
 use crate::{Error, Step};
 
-/// Units of the states (rad, rad/s, m/s, rad) inside the filter: in these, fixed point holds the smallest and the
-/// largest variance of a flight. Powers of two, so that floats do not notice.
+/// Units of the states (rad, rad/s, m/s, rad) inside the filter, in which fixed point holds the smallest and the
+/// largest variance of a flight. Powers of two, which do not affect floating-point rounding.
 pub(crate) const UNITS: [f64; 4] = [1.0 / 256.0, 1.0 / 256.0, 0.25, 1.0 / 256.0];
 
-/// NIS beyond which an output contradicts the estimate: 5 σ.
+/// Normalised innovation squared beyond which an output contradicts the estimate: 5 σ.
 pub(crate) const GATE: f64 = 25.0;
 
 /// A [`Step`] in the scalar and the units of a [`KalmanFilter`].
@@ -34,7 +34,7 @@ pub struct Transition<T: Scalar> {
 }
 
 impl<T: Scalar> Transition<T> {
-    /// The same step, converted once.
+    /// Converts a step to the filter's scalar and units.
     pub fn new(step: &Step) -> Self {
         let (units, in_units) = units();
         let noise = in_units * step.noise * in_units;
@@ -46,16 +46,16 @@ impl<T: Scalar> Transition<T> {
     }
 }
 
-/// What was measured of each output, and whether a gate left it out.
+/// The innovation of each output, and whether a gate rejected it.
 pub(crate) struct Gated<const P: usize> {
     pub(crate) innovations: [Option<Innovation<f64>>; P],
     pub(crate) is_left_out: [bool; P],
 }
 
-/// A Kalman filter with time-varying gain of α, q, V and θ, with P outputs of which each may be missing.
+/// A Kalman filter with time-varying gain for α, q, V and θ, with P outputs, any of which may be missing.
 ///
-/// What goes in and comes out is in `f64` and SI units; inside, all arithmetic is in `T`, in units in which Q16.16
-/// holds a flight's variances. Outputs are taken in one after the other, so their noise must be independent.
+/// Inputs and results are in `f64` and SI units; internally, all arithmetic is in `T`, in units in which Q16.16 holds
+/// a flight's variances. Outputs are processed one after the other, so their noise must be independent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -68,16 +68,16 @@ pub(crate) struct Gated<const P: usize> {
 )]
 pub struct KalmanFilter<T: Scalar, const P: usize> {
     state: Gaussian<T, 4>,
-    /// Rows of C as columns, and the variances of their noise: both in the outputs' units inside.
+    /// Rows of C as columns, and the variances of the outputs' noise, both in the internal units.
     rows: SMatrix<T, 4, P>,
     variances: SVector<T, P>,
-    /// Units of the outputs: powers of two.
+    /// Internal units of the outputs: powers of two.
     units: SVector<f64, P>,
 }
 
 impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
-    /// A filter of outputs y = C x whose noise has these standard deviations; it starts at a state whose errors
-    /// have standard deviations `start_sigmas`.
+    /// Creates a filter for outputs y = C x with noise of the standard deviations `sigmas`, from an initial state
+    /// whose errors have the standard deviations `start_sigmas`.
     ///
     /// # Errors
     /// [`Error::NotFinite`].
@@ -114,7 +114,7 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
         Ok(Self { state, rows, variances, units: output_units })
     }
 
-    /// The same filter at zero, with errors of these standard deviations.
+    /// A copy of the filter, reset to zero with errors of these standard deviations.
     pub(crate) fn begun_anew(&self, start_sigmas: &SVector<f64, 4>) -> Self {
         let (_, in_units) = units();
         let known = (in_units * start_sigmas).map(|sigma| T::from_f64(sigma * sigma));
@@ -122,28 +122,28 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
         Self { state: Gaussian::new(SVector::zeros(), covariance), ..*self }
     }
 
-    /// x̂: α (rad), q (rad/s), V (m/s), θ (rad).
+    /// The estimate x̂: α (rad), q (rad/s), V (m/s), θ (rad).
     pub fn estimate(&self) -> SVector<f64, 4> {
         self.state.mean.map(T::to_f64).component_mul(&SVector::from(UNITS))
     }
 
-    /// P, the covariance of the estimate's error, in the states' units.
+    /// The covariance P of the estimation error, in the states' units.
     pub fn covariance(&self) -> SMatrix<f64, 4, 4> {
         let (units, _) = units();
         units * self.state.covariance.to_matrix().map(T::to_f64) * units
     }
 
-    /// Standard deviations of the estimate's errors: rad, rad/s, m/s, rad.
+    /// Standard deviations of the estimation errors: rad, rad/s, m/s, rad.
     pub fn sigma(&self) -> SVector<f64, 4> {
         let variances = self.state.covariance.variances();
         let sigmas = variances.map(|variance| libm::sqrt(variance.to_f64().max(0.0)));
         sigmas.component_mul(&SVector::from(UNITS))
     }
 
-    /// Moves on by a step with these inputs δe (rad) and δt.
+    /// Predicts over a step with these inputs δe (rad) and δt.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is as it was.
+    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is unchanged.
     pub fn predict(
         &mut self,
         transition: &Transition<T>,
@@ -157,11 +157,11 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
         Ok(self.state.advance(&Forced { process, b: &transition.b, input })?)
     }
 
-    /// Takes in the outputs that were measured, and answers with what each said beyond what was expected of it: the
-    /// innovation in the output's unit, its variance and NIS.
+    /// Processes the measured outputs, and returns for each the innovation in its unit, the innovation's variance and
+    /// its NIS.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is as it was.
+    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is unchanged.
     pub fn correct(
         &mut self,
         measured: &[Option<f64>; P],
@@ -169,10 +169,10 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
         self.correct_with(measured, |next, weighed, _| Ok(next.correct(weighed)?))
     }
 
-    /// The same without outputs that a gate leaves out; those are told, too.
+    /// Processes the measured outputs, except those that a gate rejects; innovations are returned for all.
     ///
     /// # Errors
-    /// As [`KalmanFilter::correct`]; filter and gates are as they were.
+    /// Those of [`KalmanFilter::correct`]; filter and gates are unchanged.
     pub(crate) fn correct_gated(
         &mut self,
         measured: &[Option<f64>; P],
@@ -180,7 +180,7 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
     ) -> Result<Gated<P>, Error> {
         let (mut judging, mut is_left_out) = (*gates, [false; P]);
         let innovations = self.correct_with(measured, |next, weighed, output| {
-            // Without an index, which would keep a check of its bounds.
+            // No index is used: it would require a bounds check.
             let places = judging.get_mut(output).zip(is_left_out.get_mut(output));
             if let Some((gate, is_left_out)) = places {
                 *is_left_out = !gate.admits(weighed.exceeds(T::from_f64(GATE)));
@@ -228,13 +228,13 @@ impl<T: Scalar, const P: usize> KalmanFilter<T, P> {
     }
 }
 
-/// The units on a diagonal, and their inverse.
+/// The diagonal matrix of the units, and its inverse.
 fn units() -> (SMatrix<f64, 4, 4>, SMatrix<f64, 4, 4>) {
     let units = SVector::from(UNITS);
     (SMatrix::from_diagonal(&units), SMatrix::from_diagonal(&units.map(f64::recip)))
 }
 
-/// A process of the states, and inputs on top of it, so that the estimate is looked at, and kept, once.
+/// A process of the states with the inputs' effect added, so that the estimate is checked and stored only once.
 pub(crate) struct Forced<'a, T, Q> {
     pub(crate) process: Q,
     pub(crate) b: &'a SMatrix<T, 4, 2>,
@@ -253,7 +253,7 @@ impl<T: Scalar, const N: usize, Q: Process<T, N>> Process<T, N> for Forced<'_, T
     }
 }
 
-/// The power of two below a size; 1 where there is none.
+/// The largest power of two not above `size`; 1 if `size` is not a normal number.
 pub(crate) fn power_of_two(size: f64) -> f64 {
     const EXPONENT: u64 = 0x7FF << 52;
     if size.is_normal() { f64::from_bits(size.to_bits() & EXPONENT) } else { 1.0 }

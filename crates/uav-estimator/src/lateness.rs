@@ -1,37 +1,41 @@
 use kestirim_kalman::Innovation;
 
-/// Samples over which it is seen how far an expected output has moved: from the exponential average over so many.
+/// Number of samples of the exponential average relative to which an expected output's movement is measured.
 const LAG: f32 = 16.0;
-/// Samples over which all is summed, exponentially: ten seconds at 100 Hz.
+/// Number of samples over which the sums decay exponentially: ten seconds at 100 Hz.
 const MEMORY: f32 = 1000.0;
-/// A spike says nothing of time: normalised innovations squared from here on do not count, …
+/// Normalised innovations squared from here on are ignored: a spike says nothing about timing.
 const LARGEST_NIS: f32 = 10.0;
-/// … nor do jumps, after which the average begins anew: movements squared in units of the innovations' variance.
+/// Squared movements, in units of the innovations' variance, from here on are jumps, after which the average
+/// restarts.
 const LARGEST_MOVEMENT: f32 = 1e4;
-/// Movements squared, on average at least; of less, a wrong noise makes something that looks like lateness.
+/// Smallest mean squared movement: with less, a wrong noise level can look like lateness.
 const LEAST_MOVEMENT: f32 = 1.0;
-/// Standard deviations from which a correlation is none by chance. In 432 clean flights of 10 to 60 s the largest was 3.1.
+/// Smallest significant correlation, in standard deviations. In 432 clean flights of 10 to 60 s the largest was 3.1.
 const SIGNIFICANT: f32 = 6.0;
-/// Lateness in samples that is told. A filter follows what is late: a quarter of it is left in the innovations.
+/// Smallest lateness that is reported, in samples of the innovations. A filter follows late outputs: a quarter of the
+/// lateness remains in the innovations.
 const LATE: f32 = 0.75;
 
-/// Whether outputs come late, or inputs: then innovations are in proportion to how fast the expected output moves.
+/// Detects late outputs or inputs: the innovations are then proportional to the rate of change of the expected
+/// output.
 ///
-/// An output that is τ late is −τ times its derivative beside what was expected; inputs that are late look like
-/// outputs that are early. Innovations of a right model are white and independent of what was expected before, so the
-/// sum of products is a martingale, whose variance is the sum of their squares.
+/// An output that is late by τ differs from its prediction by −τ times its derivative; late inputs look like early
+/// outputs. Innovations of a correct model are white and independent of earlier predictions, so the sum of products
+/// is a martingale, whose variance is the sum of their squares.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Lateness<const P: usize> {
-    /// Expected outputs, averaged.
+    /// Exponential averages of the expected outputs.
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     usual: [f32; P],
-    /// Sums of innovation by movement, of its square, of movements squared, in units of the innovations' variances, …
+    /// Decaying sums, in units of the innovations' variances: innovation times movement, the square of that, and the
+    /// movement squared.
     product: f32,
     variance: f32,
     moved: f32,
-    /// … and of how many outputs.
+    /// Decaying number of outputs in the sums.
     count: f32,
 }
 
@@ -39,7 +43,7 @@ impl<const P: usize> Lateness<P> {
     pub(crate) const NONE: Self =
         Self { usual: [0.0; P], product: 0.0, variance: 0.0, moved: 0.0, count: 0.0 };
 
-    /// Counts the outputs of a sample.
+    /// Adds the outputs of a sample.
     pub(crate) fn count(
         &mut self,
         measured: &[Option<f64>; P],
@@ -58,7 +62,7 @@ impl<const P: usize> Lateness<P> {
             let moved = expected - *usual;
             let scaled = moved / innovation.variance as f32;
             let (squared, product) = (moved * scaled, beyond * scaled);
-            // Nor is what is not a number below it.
+            // A NaN fails this comparison, too.
             if squared < LARGEST_MOVEMENT {
                 *usual += moved * (1.0 / LAG);
             } else {
@@ -74,7 +78,7 @@ impl<const P: usize> Lateness<P> {
         }
     }
 
-    /// Whether it is beyond chance, and worth telling.
+    /// Whether the lateness is significant and large enough to be reported.
     pub(crate) fn is_told(&self) -> bool {
         const LEAST: f32 = LATE / LAG;
         self.moved > LEAST_MOVEMENT * self.count
@@ -87,7 +91,7 @@ impl<const P: usize> Lateness<P> {
 mod tests {
     use super::*;
 
-    /// Innovations of a sine that is so many samples late, with noise, of variance 1.
+    /// Innovations of unit variance, with noise, of a sine that is late by `late` samples.
     fn told(late: f64, amplitude: f64, wild: impl Fn(usize) -> Option<[f64; 3]>) -> bool {
         let mut lateness = Lateness::<1>::NONE;
         for at in 0..3000 {

@@ -1,20 +1,20 @@
 use kestirim_health::{Health, Reason};
 
-/// A spike is one measurement and counts as one: normalised innovations squared count for no more.
+/// Limit of a normalised innovation squared, so that a spike counts as a single measurement.
 const MOST: f64 = 10.0;
-/// Samples over which normalised innovations squared are averaged, exponentially, …
+/// Number of samples over which normalised innovations squared are averaged exponentially.
 const NIS_MEMORY: f32 = 100.0;
-/// … from so many on, …
+/// Number of samples from which this average is judged.
 const NIS_FIRST: u8 = 200;
-/// … and what they are at most if model and noise are right. They are 1 on average, and the mean of a hundred is within
-/// 1.5 with 99.9 %; noise of one and a half times what was said is no reason to doubt.
+/// Largest mean normalised innovation squared if model and noise are right. It is 1 on average, and the mean of a
+/// hundred is below 1.5 with 99.9 %; noise of one and a half times the specified level is not reported.
 const NIS: f32 = 2.25;
-/// Samples over which it is counted how many measurements were left out, exponentially, …
+/// Number of samples over which the share of rejected measurements is averaged exponentially.
 const LEFT_OUT_MEMORY: f32 = 25.0;
-/// … and the share of them beyond which the estimate is worth less.
+/// Share of rejected measurements beyond which the estimate is unreliable.
 const LEFT_OUT: f32 = 0.1;
 
-/// Whether measurements and model agree: averages over the last seconds.
+/// Consistency of measurements and model, averaged over the last seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -25,11 +25,11 @@ pub(crate) struct Monitor {
 }
 
 impl Monitor {
-    /// One that has seen nothing.
+    /// A monitor without samples.
     pub(crate) const NEW: Self = Self { nis: Share::NONE, left_out: Share::NONE, seen: 0 };
 
-    /// Counts a sample: its measurements, how many of them were left out, and what their innovations squared were in
-    /// units of their variances, where a variance is known.
+    /// Adds a sample: the number of its measurements, the number rejected, and the normalised innovations squared,
+    /// where variances are known.
     pub(crate) fn count(
         &mut self,
         measured: usize,
@@ -43,7 +43,7 @@ impl Monitor {
         self.seen = self.seen.saturating_add(1);
     }
 
-    /// What they come to.
+    /// The present assessment.
     pub(crate) fn health(&self) -> Health {
         Health::GOOD
             .with(Reason::Rejected, self.left_out.exceeds(LEFT_OUT))
@@ -51,7 +51,7 @@ impl Monitor {
     }
 }
 
-/// A sum over a number of things, both fading.
+/// An exponentially decaying sum and the number of its terms.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -2,12 +2,13 @@ use nalgebra::SVector;
 
 use crate::{Dynamics, Error, Step};
 
-/// A model that can be moved on by any interval.
+/// A model that can be discretised over any interval.
 pub(crate) trait Moves {
-    /// What it does in an interval.
+    /// The model's step over an interval.
     type Step;
 
-    /// Its step over `interval` (s), where white noise of these standard deviations a `sample` (s) reaches the inputs.
+    /// The step over `interval` (s), with white noise of the standard deviations `noise` per `sample` (s) on the
+    /// inputs.
     fn over(
         &self,
         interval: f64,
@@ -27,10 +28,10 @@ impl Moves for Dynamics {
 /// Longest gap, in usual intervals.
 const LONGEST_GAP: f64 = 1e6;
 
-/// Steps of a model over the intervals between samples; the last one for each remainder of the interval's
-/// microseconds by L is kept.
+/// A cache of a model's steps over the intervals between samples: the last one for each remainder of the interval in
+/// µs modulo L.
 ///
-/// Intervals that jitter by less than L µs have a place each, so that nothing is computed twice.
+/// Intervals that jitter by less than L µs have a slot each, so that nothing is computed twice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -43,9 +44,9 @@ const LONGEST_GAP: f64 = 1e6;
 )]
 pub(crate) struct Transitions<D, S, const L: usize> {
     dynamics: D,
-    /// s.
+    /// Usual interval, s.
     usual: f64,
-    /// Standard deviations of the inputs' noise a usual interval.
+    /// Standard deviations of the inputs' noise per usual interval.
     noise: SVector<f64, 2>,
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     known: [Option<(i64, S)>; L],
@@ -56,13 +57,13 @@ impl<D: Moves, S: Copy, const L: usize> Transitions<D, S, L> {
         Self { dynamics, usual, noise, known: [None; L] }
     }
 
-    /// With another usual interval, s.
+    /// Changes the usual interval (s), which clears the cache.
     pub(crate) fn set_usual(&mut self, usual: f64) {
         self.usual = usual;
         self.known = [None; L];
     }
 
-    /// Step over so many microseconds, in the form that `form` gives it.
+    /// The step over `interval_us` (µs), converted by `form`.
     pub(crate) fn over(
         &self,
         interval_us: i64,
@@ -80,7 +81,7 @@ impl<D: Moves, S: Copy, const L: usize> Transitions<D, S, L> {
         Ok(form(&self.dynamics.over(interval, self.usual, &self.noise)?))
     }
 
-    /// Keeps what was computed for an interval.
+    /// Caches the step of an interval.
     pub(crate) fn keep(&mut self, interval_us: i64, step: &S) {
         if let Some(place) = self.known.get_mut(Self::place(interval_us)) {
             *place = Some((interval_us, *step));
@@ -93,11 +94,11 @@ impl<D: Moves, S: Copy, const L: usize> Transitions<D, S, L> {
     }
 }
 
-/// No sample is so late (µs): the clock was set back.
+/// A sample older than the previous one by more than this (µs) means that the clock was set back.
 const SET_BACK_US: i64 = 1_000_000;
 
-/// Whether a sample is so much older than the one before that the clock was set back; one wrong time stamp far ahead
-/// would be the last one taken otherwise.
+/// Whether a sample is so much older than the previous one that the clock was set back. Otherwise a single time stamp
+/// far in the future would be the last one accepted.
 pub(crate) fn is_set_back(before_us: i64, now_us: i64) -> bool {
     before_us.saturating_sub(now_us) > SET_BACK_US
 }

@@ -5,14 +5,14 @@ use crate::kalman_filter::Gated;
 use crate::lateness::Lateness;
 use crate::monitor::Monitor;
 
-/// What is watched of a filter's outputs, so that it can be told how far its estimate can be relied upon.
+/// Supervision of a filter's outputs, from which the reliability of its estimate is judged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Watch<const P: usize> {
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     pub(crate) gates: [Gate; P],
-    /// How many times each output was left out.
+    /// Number of rejections of each output.
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     pub(crate) rejected: [u32; P],
     monitor: Monitor,
@@ -20,7 +20,7 @@ pub(crate) struct Watch<const P: usize> {
 }
 
 impl<const P: usize> Watch<P> {
-    /// One that has seen nothing.
+    /// A state without samples.
     pub(crate) const NEW: Self = Self {
         gates: [Gate::NEW; P],
         rejected: [0; P],
@@ -28,7 +28,7 @@ impl<const P: usize> Watch<P> {
         lateness: Lateness::NONE,
     };
 
-    /// Counts a sample: what came of its outputs, and those of which it can be told whether they are late.
+    /// Adds a sample: the result for its outputs, and those outputs that are checked for lateness.
     pub(crate) fn count(&mut self, timed: &[Option<f64>; P], judged: &Gated<P>) {
         for (rejected, is_left_out) in self.rejected.iter_mut().zip(judged.is_left_out) {
             *rejected = rejected.saturating_add(u32::from(is_left_out));
@@ -39,7 +39,7 @@ impl<const P: usize> Watch<P> {
         self.lateness.count(timed, &judged.innovations);
     }
 
-    /// What it comes to.
+    /// The present assessment.
     pub(crate) fn health(&self) -> Health {
         self.monitor.health().with(Reason::Time, self.lateness.is_told())
     }

@@ -1,4 +1,4 @@
-//! How sure the parameters are, where residuals are coloured.
+//! Uncertainty of the parameters when residuals are coloured.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -6,16 +6,16 @@ use crate::flight::OUTPUTS;
 use crate::likelihood::Problem;
 use crate::scoring::Top;
 
-/// Residuals are correlated over this time at the most, s.
+/// Longest time over which residuals are taken to be correlated, s.
 const LONGEST_S: f64 = 3.0;
 
-/// A stretch's residuals of an output over their deviations, and how each grows with the coordinates.
+/// The normalised residuals of an output in a stretch, and their rows among all innovations.
 struct Channel {
     residuals: Vec<f64>,
     rows: Vec<usize>,
 }
 
-/// Residuals by stretch and output.
+/// The residuals by stretch and output.
 fn channels(problem: &Problem, top: &Top) -> Vec<(usize, Channel)> {
     let mut channels = Vec::new();
     let mut row = 0;
@@ -35,7 +35,7 @@ fn channels(problem: &Problem, top: &Top) -> Vec<(usize, Channel)> {
     channels
 }
 
-/// Correlation of what follows one another at a distance of 0, 1, … samples.
+/// Autocovariance of the values at lags of 0, 1, … samples (the biased estimate).
 pub(crate) fn autocorrelation(values: &[f64], lags: usize) -> Vec<f64> {
     let count = values.len().max(1) as f64;
     (0..lags.min(values.len()))
@@ -43,12 +43,12 @@ pub(crate) fn autocorrelation(values: &[f64], lags: usize) -> Vec<f64> {
         .collect()
 }
 
-/// The covariance of the coordinates: F⁻¹ (Σ sᵢ ρ(i − j) sⱼᵀ) F⁻¹ with what residuals of an output have to do with one another
-/// (Maine & Iliff, NASA RP-1077, 1981; Morelli & Klein, J. Aircraft 34(2), 1997).
+/// The covariance of the coordinates, F⁻¹ (Σ sᵢ ρ(i − j) sⱼᵀ) F⁻¹, with the autocorrelation ρ of each output's
+/// residuals (Maine & Iliff, NASA RP-1077, 1981; Morelli & Klein, J. Aircraft 34(2), 1997).
 pub(crate) fn covariance(
     problem: &Problem,
     top: &Top,
-    // F⁻¹.
+    // The inverse information F⁻¹.
     inverse: &DMatrix<f64>,
 ) -> DMatrix<f64> {
     let lags = (LONGEST_S / problem.reference.interval).ceil() as usize;
@@ -79,10 +79,10 @@ pub(crate) fn covariance(
         middle += slopes.tr_mul(&coloured);
         white += slopes.tr_mul(&slopes);
     }
-    // What comes of expectations and of the noise's own size is as it was.
+    // The contributions of the priors and of the noise parameters are unchanged.
     let rest = &top.information - white;
     let coloured = inverse * (middle + rest) * inverse;
-    // Coloured residuals take certainty away; they give none.
+    // Coloured residuals can only increase the uncertainty.
     let least = DVector::from_fn(columns, |place, _| {
         (inverse[(place, place)] / coloured[(place, place)].max(f64::MIN_POSITIVE)).max(1.0).sqrt()
     });
@@ -91,19 +91,19 @@ pub(crate) fn covariance(
     })
 }
 
-/// How white the residuals of an output are.
+/// Whiteness of the residuals of an output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Whiteness {
-    /// Correlation of a residual with the one before; 0 if they are white.
+    /// Correlation of successive residuals; 0 if they are white.
     pub next: f64,
-    /// Share of the correlations over one second that are within what white noise shows 19 times in 20.
+    /// Share of the correlations at lags up to one second that are within the 95 % bound of white noise.
     pub within: f64,
-    /// Root mean square over the deviation that the filter believed: 1 if it believed right.
+    /// Root mean square of the residuals over the filter's standard deviation; 1 if the filter is consistent.
     pub ratio: f64,
 }
 
-/// Of each output that there is, all stretches together.
+/// The whiteness of each available output, over all stretches together.
 pub(crate) fn whiteness(problem: &Problem, top: &Top) -> [Option<Whiteness>; OUTPUTS] {
     let lags = ((1.0 / problem.reference.interval).ceil() as usize).max(2);
     let channels = channels(problem, top);

@@ -1,4 +1,4 @@
-//! What sensors say of one another, by kinematics alone: no model of the aircraft enters.
+//! Consistency of the sensors with one another by kinematics alone, without a model of the aircraft.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -6,42 +6,42 @@ use crate::accuracy::autocorrelation;
 use crate::flight::Flight;
 use crate::structure::GRAVITY;
 
-/// Integrals drift; over so many seconds a sensor's bias is one, s.
+/// Integrals drift: duration over which a sensor's bias is taken to be constant, s.
 const BLOCK_S: f64 = 25.0;
-/// Delays are looked for up to this, s.
+/// Largest delay that is considered, s.
 const LONGEST_DELAY_S: f64 = 0.25;
 
-/// A sensor beside what the others say it should show: measured = scale · expected + offset.
+/// A sensor compared with what other sensors predict: measured = scale · expected + offset.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Comparison {
-    /// Its scale: 1 if it agrees.
+    /// Scale of the sensor relative to the prediction; 1 if they agree.
     pub scale: f64,
-    /// The standard error of the scale, with coloured residuals.
+    /// Standard error of the scale, allowing for coloured residuals.
     pub scale_sigma: f64,
-    /// What its rate is off, on average, in its unit per second: a bias of what was integrated.
+    /// Mean slope of the difference, in the sensor's unit per second: a bias of the integrated signal.
     pub drift: f64,
-    /// By how much it is later than what it is compared with, s.
+    /// Delay of the sensor relative to the prediction, s.
     pub delay: f64,
-    /// Root mean square of what is left, in its unit.
+    /// Root mean square of the residual, in the sensor's unit.
     pub residual: f64,
 }
 
-/// What sensors say of one another; what lacks a sensor is none.
+/// Consistency of the sensors; comparisons for which a sensor is missing are `None`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Compatibility {
-    /// The pitch angle beside the integral of the gyro's rate; `drift` is the gyro's bias, negative, rad/s.
+    /// The pitch angle against the integral of the gyro's rate; `drift` is the negative bias of the gyro, rad/s.
     pub pitch: Option<Comparison>,
-    /// The vane beside the integral of q + (`fz` + g·cos γ)/V, rad.
+    /// The vane's angle of attack against the integral of q + (`fz` + g·cos γ)/V, rad.
     pub vane: Option<Comparison>,
-    /// How far the vane is ahead of the centre of mass over the airspeed, s.
+    /// Distance of the vane ahead of the centre of mass, divided by the airspeed, s.
     pub vane_lead: Option<f64>,
-    /// The airspeed beside the integral of `fx` − g·sin γ, m/s.
+    /// The airspeed against the integral of `fx` − g·sin γ, m/s.
     pub airspeed: Option<Comparison>,
 }
 
-/// Compares what the flights have of pitch, vane and airspeed with gyro and accelerometers.
+/// Compares pitch angle, vane and airspeed of the flights with gyro and accelerometers.
 pub(crate) fn compatibility(flights: &[Flight]) -> Compatibility {
     let pitch = compare(flights, "theta", false, |at| at.q);
     let vane = compare(flights, "alpha", true, |at| {
@@ -63,7 +63,7 @@ pub(crate) fn compatibility(flights: &[Flight]) -> Compatibility {
     }
 }
 
-/// A moment of a flight.
+/// The signals of a flight at one time.
 struct Moment {
     alpha: Option<f64>,
     q: Option<f64>,
@@ -73,7 +73,7 @@ struct Moment {
     ax: Option<f64>,
 }
 
-/// A stretch of a flight: times, what is measured, what is expected but for a constant, and the pitch rate.
+/// A part of a flight: times, measured and expected values (up to a constant), and the pitch rate.
 struct Block {
     times: Vec<f64>,
     measured: Vec<f64>,
@@ -114,7 +114,7 @@ fn blocks(flight: &Flight, name: &str, rate: impl Fn(&Moment) -> Option<f64>) ->
     blocks
 }
 
-/// The comparison at the delay that leaves least, and the factor of q.
+/// The comparison at the delay with the smallest residual, and the coefficient of q.
 fn compare(
     flights: &[Flight],
     name: &str,
@@ -124,7 +124,7 @@ fn compare(
     let blocks: Vec<_> = flights.iter().flat_map(|flight| blocks(flight, name, rate)).collect();
     let interval = flights.iter().map(Flight::interval).fold(f64::MAX, f64::min);
     let most = (2.0 * LONGEST_DELAY_S / interval).round().min(50.0) as i32;
-    // A lever and a delay look nearly alike: where the lever is asked for, there is no delay.
+    // A lever arm and a delay look nearly alike: where the lever arm is estimated, the delay is zero.
     let delays = if with_rate { 0..=0 } else { -most..=most };
     let found =
         delays.filter_map(|delay| at_delay(&blocks, f64::from(delay) * 0.5 * interval, with_rate));
@@ -166,7 +166,7 @@ fn at_delay(blocks: &[Block], delay: f64, with_rate: bool) -> Option<(Comparison
     let variance = left.norm_squared() / (lines - columns) as f64;
     let correlation = autocorrelation(left.as_slice(), 2);
     let next = (correlation[1] / correlation[0].max(f64::MIN_POSITIVE)).clamp(0.0, 0.999);
-    // As many samples as are new.
+    // Scaled to the number of independent samples.
     let coloured = variance * (1.0 + next) / (1.0 - next);
     let drifts = (0..blocks.len()).map(|index| found[unknowns + 2 * index + 1]);
     let comparison = Comparison {

@@ -1,4 +1,4 @@
-//! How well a model's outputs fit a flight, one sample ahead and without any correction.
+//! Goodness of fit of a model's outputs to a flight: one sample ahead, and without any correction.
 
 use crate::Error;
 use crate::accuracy::Whiteness;
@@ -6,19 +6,21 @@ use crate::flight::{FITTED, Flight, OUTPUTS, Segment};
 use crate::likelihood::{Problem, Unknown, settled, solve};
 use crate::structure::Structure;
 
-/// How well an output fits.
+/// Goodness of fit of an output.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Fit {
-    /// Its column.
+    /// The output's column.
     pub output: &'static str,
-    /// Root mean square of what is measured less what the filter predicted from all before.
+    /// Root mean square of the measurement minus the filter's prediction from all earlier measurements.
     pub ahead: f64,
-    /// … less what the model says with these inputs from its first state on, without a look at any measurement.
+    /// Root mean square of the measurement minus the model's simulation from the initial state and the inputs,
+    /// without any correction from measurements.
     pub alone: f64,
-    /// Theil's inequality coefficient of that, of deviations from the mean flight: 0 is perfect, 1 says nothing.
+    /// Theil's inequality coefficient of the simulation, for deviations from the mean flight: 0 is perfect, 1 is no
+    /// information.
     pub theil: f64,
-    /// How white the filter's residuals are; none for a part that was held out.
+    /// Whiteness of the filter's residuals; `None` for held-out data.
     pub whiteness: Option<Whiteness>,
 }
 
@@ -67,7 +69,7 @@ fn sums(
     Ok(sums)
 }
 
-/// Of each output that these stretches have. Their first state and constant errors are fitted.
+/// The fit of each output in these stretches, whose initial states and constant errors are fitted.
 pub(crate) fn fits(
     problem: &Problem,
     unknown: &Unknown,
@@ -86,7 +88,7 @@ pub(crate) fn fits(
     Ok((0..OUTPUTS).filter(|&output| ahead[output].count > 0.0).map(fit).collect())
 }
 
-/// What each flight has up to a share of it, and what comes after.
+/// Splits each flight at a share of its samples: the parts before, and the parts after.
 pub(crate) fn divided(flights: &[Flight], share: f64) -> (Vec<Flight>, Vec<Flight>) {
     let before = flights.iter().map(|flight| flight.part(0.0, share)).collect();
     (before, flights.iter().map(|flight| flight.part(share, 1.0)).collect())

@@ -1,46 +1,48 @@
-//! What was recorded, and the stretches of it that are used.
+//! Recorded flights, and the stretches of them that are used.
 
 use crate::Error;
 use crate::parameter::STATES;
 
-/// Longer pauses between samples end a stretch, s.
+/// Longer gaps between samples end a stretch, s.
 const LONGEST_GAP_S: f64 = 1.0;
-/// A shorter stretch shows no mode, s.
+/// Shorter stretches are not used, since they show no mode, s.
 const SHORTEST_S: f64 = 5.0;
-/// A slower mean speed is no flight, m/s.
+/// Lowest mean airspeed of a flight, m/s.
 const SLOWEST: f64 = 2.0;
-/// An elevator that moves less is at rest, rad.
+/// Smallest standard deviation of an elevator that counts as moving, rad.
 const LEAST_ELEVATOR: f64 = 1e-3;
-/// A throttle that moves less, of 1, is at rest.
+/// Smallest standard deviation of a throttle (0 to 1) that counts as moving.
 const LEAST_THROTTLE: f64 = 0.01;
-/// Times are rounded to such a part of the usual interval, so that few different ones are left.
+/// Times are rounded to the usual interval divided by this, so that few different steps occur.
 const TICKS: f64 = 64.0;
 
-/// What the likelihood is of: columns of the log in this order.
+/// The outputs that enter the likelihood: columns of the log, in this order.
 pub(crate) const FITTED: [&str; 6] = ["alpha", "q", "V", "theta", "az", "ax"];
 pub(crate) const OUTPUTS: usize = FITTED.len();
 
-/// A recorded flight as plain numbers.
+/// A recorded flight.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Flight {
     /// Times, s.
     pub times: Vec<f64>,
     /// Elevator (rad) and throttle (0 to 1) at these times.
     pub inputs: Vec<[f64; 2]>,
-    /// What was measured: a name and a value, or none, for each time. `alpha`, `q`, `V`, `theta` are the states (rad, rad/s,
-    /// m/s, rad); `az` and `ax` specific forces along the body's axes down and forwards, m/s² (−9.8 and 0 at rest);
-    /// `qbar` the dynamic pressure, Pa; `climb` and `V_ground` of the ground, m/s. What has another name is left alone.
+    /// Measurements: for each column a name, and a value or `None` at each time.
+    ///
+    /// `alpha`, `q`, `V`, `theta` are the states (rad, rad/s, m/s, rad); `az` and `ax` specific forces along the
+    /// body's axes down and forwards, m/s² (−9.8 and 0 at rest); `qbar` the dynamic pressure, Pa; `climb` and
+    /// `V_ground` the velocity relative to the ground, m/s. Other columns are ignored.
     pub columns: Vec<(String, Vec<Option<f64>>)>,
 }
 
 impl Flight {
-    /// A column by its name, if anything was measured.
+    /// The column with this name, if it contains any measurement.
     pub(crate) fn column(&self, name: &str) -> Option<&[Option<f64>]> {
         let (_, values) = self.columns.iter().find(|(column, _)| column == name)?;
         values.iter().any(Option::is_some).then_some(values)
     }
 
-    /// The usual interval, s.
+    /// The median interval between samples, s.
     pub(crate) fn interval(&self) -> f64 {
         let mut steps: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         steps.sort_by(f64::total_cmp);
@@ -70,7 +72,7 @@ impl Flight {
         Ok(())
     }
 
-    /// The stretches without a gap that are long enough, as ranges of samples.
+    /// The stretches without gaps that are long enough, as ranges of samples.
     fn stretches(&self) -> Vec<(usize, usize)> {
         let breaks = (1..self.times.len())
             .filter(|&at| self.times[at] - self.times[at - 1] > LONGEST_GAP_S)
@@ -84,7 +86,7 @@ impl Flight {
         if to > from { self.times[to - 1] - self.times[from] } else { 0.0 }
     }
 
-    /// The samples from one share of the flight to another.
+    /// The samples between two shares of the flight.
     pub(crate) fn part(&self, from: f64, to: f64) -> Self {
         let at = |share: f64| (share * self.times.len() as f64).round() as usize;
         let range = at(from)..at(to);
@@ -99,21 +101,21 @@ impl Flight {
     }
 }
 
-/// The point that deviations are counted from: means of all flights.
+/// The operating point from which deviations are counted: the mean of all flights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Reference {
     pub(crate) state: [f64; 4],
     pub(crate) input: [f64; 2],
-    /// az, ax.
+    /// Mean specific forces az and ax, m/s².
     pub(crate) force: [f64; 2],
-    /// Which columns there are, of [`FITTED`].
+    /// Which of the columns [`FITTED`] are available.
     pub(crate) has: [bool; OUTPUTS],
     pub(crate) throttle_moves: bool,
-    /// The usual interval, s.
+    /// The smallest of the flights' median intervals, s.
     pub(crate) interval: f64,
 }
 
-/// A mean, and the deviation from it.
+/// The mean and the standard deviation.
 pub(crate) fn spread(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     let count = values.clone().count().max(1) as f64;
     let mean = values.clone().sum::<f64>() / count;
@@ -147,7 +149,7 @@ impl Reference {
         if airspeed < SLOWEST {
             return Err(Error::NotFlying(airspeed));
         }
-        // Without a vane, α is what is left of the pitch angle after the climb.
+        // Without a vane, α is the pitch angle minus the climb angle.
         let climb = (mean("climb") / airspeed).clamp(-0.5, 0.5).asin();
         let alpha = if has[0] { mean("alpha") } else { theta - climb };
         let [az, ax] = [mean("az"), mean("ax")];
@@ -167,18 +169,18 @@ impl Reference {
 /// A stretch of a flight, as deviations from the [`Reference`].
 #[derive(Debug, Clone)]
 pub(crate) struct Segment {
-    /// Times, s from the beginning of the stretch.
+    /// Times since the beginning of the stretch, s.
     pub(crate) times: Vec<f64>,
-    /// The same in ticks.
+    /// Times since the beginning of the stretch, in ticks.
     pub(crate) ticks: Vec<i64>,
-    /// Seconds a tick.
+    /// Duration of a tick, s.
     pub(crate) tick: f64,
     pub(crate) inputs: Vec<[f64; 2]>,
     pub(crate) measured: Vec<[Option<f64>; OUTPUTS]>,
 }
 
 impl Segment {
-    /// All that is long enough of these flights.
+    /// All stretches of these flights that are long enough.
     pub(crate) fn all(flights: &[Flight], reference: &Reference) -> Result<Vec<Self>, Error> {
         let segments: Vec<_> = flights
             .iter()
@@ -220,12 +222,12 @@ impl Segment {
         }
     }
 
-    /// The usual interval, s.
+    /// The median interval between samples, s.
     pub(crate) fn interval(&self) -> f64 {
         TICKS * self.tick
     }
 
-    /// Inputs at a time, linearly between the samples.
+    /// The inputs at a time, interpolated linearly between samples.
     pub(crate) fn input_at(&self, time: f64) -> [f64; 2] {
         let after = self.times.partition_point(|at| *at <= time).clamp(1, self.times.len() - 1);
         let (before, span) = (after - 1, self.times[after] - self.times[after - 1]);

@@ -14,28 +14,31 @@ use crate::scoring::{Top, climb};
 use crate::start::{expected_noise, first_guess, floors};
 use crate::structure::Structure;
 
-/// The first share of each flight is identified from for the validation, the rest predicted.
+/// The share of each flight from which the validation's model is identified; the rest is predicted.
 const IDENTIFIED: f64 = 0.7;
-/// A flight that narrows what is expected of any aircraft by less than this does not tell a parameter.
+/// A parameter counts as identified if the flight reduces its standard deviation below this share of the prior's.
 const NARROWED: f64 = 0.5;
-/// Correlations from here on are worth telling.
+/// Smallest correlation that is reported.
 const CORRELATED: f64 = 0.9;
 
-/// What is known of a parameter after the flight.
+/// How well a parameter is known after the flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Known {
-    /// The flight tells it.
+    /// The flight determines it.
     Identified,
-    /// The flight tells less than what holds of any aircraft: the value is mostly that.
+    /// The flight contributes less than the prior of any aircraft, which mostly determines the value.
     Weak,
-    /// Nothing in the log depends on it, for this reason: it was not searched for.
+    /// Nothing in the log depends on it, for this reason; it is not estimated.
     Fixed(&'static str),
 }
 
-/// A parameter. `Z_…` are derivatives of α̇ (`Z_q` without the 1 of kinematics), `M_…` of q̇, `X_…` of V̇, all three at the centre of mass and
-/// with what α̇ does to them; `vane_lead` how far the vane is ahead of the centre of mass over the airspeed.
+/// An estimated parameter.
+///
+/// `Z_…` are derivatives of α̇ (`Z_q` without the kinematic 1), `M_…` of q̇, `X_…` of V̇, all at the centre of mass
+/// and including the effect of α̇ on them; `vane_lead` is the distance of the vane ahead of the centre of mass,
+/// divided by the airspeed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Parameter {
@@ -45,61 +48,63 @@ pub struct Parameter {
     pub unit: &'static str,
     /// Its value.
     pub value: f64,
-    /// Its standard error, with coloured residuals.
+    /// Standard error, allowing for coloured residuals.
     pub sigma: f64,
-    /// Cramér and Rao's bound, as if residuals were white.
+    /// The Cramér-Rao bound, which assumes white residuals.
     pub bound: f64,
-    /// The guess of least squares that it began with.
+    /// The initial least-squares estimate (equation error).
     pub equation_error: f64,
-    /// What output error said, without process noise; none where that explains no flight.
+    /// The output-error estimate, without process noise; `None` where that fails to explain the flights.
     pub output_error: Option<f64>,
-    /// Whether the flight tells it.
+    /// How well the flight determines it.
     pub known: Known,
 }
 
-/// Two parameters that cannot be told apart well.
+/// Two parameters that are hard to distinguish.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Correlation {
-    /// The two.
+    /// The names of the two parameters.
     pub of: [&'static str; 2],
     /// Their correlation.
     pub value: f64,
 }
 
-/// What came of flights.
+/// The result of an identification.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Identified {
-    /// What a filter takes.
+    /// The model, as a filter reads it.
     pub model: Model,
-    /// Its modes, 1/s: real and imaginary parts of the eigenvalues of A.
+    /// Modes of the model, 1/s: real and imaginary parts of the eigenvalues of A.
     pub modes: Vec<[f64; 2]>,
-    /// What was found.
+    /// The estimated parameters.
     pub parameters: Vec<Parameter>,
-    /// Pairs of parameters that are nearly one.
+    /// Pairs of strongly correlated parameters.
     pub correlations: Vec<Correlation>,
     /// How well the outputs fit.
     pub fits: Vec<Fit>,
-    /// Residuals of output error, whose colour says whether process noise was needed; none where it explains no flight.
+    /// The fit of output error, whose coloured residuals show whether process noise is needed; `None` where it fails
+    /// to explain the flights.
     pub without_process_noise: Option<Vec<Fit>>,
-    /// By how much process noise raises the logarithm of the likelihood of output error.
+    /// Increase of the log-likelihood over output error that process noise achieves.
     pub gain: Option<f64>,
-    /// A model of the first part of the flights, on the rest; none if either is too short.
+    /// The fit, to the rest of the flights, of a model identified from their first part; `None` if either is too
+    /// short.
     pub validation: Option<Vec<Fit>>,
-    /// What sensors say of one another.
+    /// Consistency of the sensors with one another.
     pub compatibility: Compatibility,
-    /// Pure numbers, if the aircraft's size is known.
+    /// Dimensionless coefficients, if the aircraft's size is known.
     pub coefficients: Vec<Coefficient>,
-    /// What was used, s.
+    /// Duration of the data used, s.
     pub seconds: f64,
 }
 
-/// Both fits of some flights.
+/// The output-error and filter-error fits of a set of flights.
 struct Fitted {
     problem: Problem,
     first: Unknown,
-    /// None where the aircraft strays too far from what it does in calm air.
+    /// `None` if the aircraft strays too far from its motion in calm air.
     output_error: Option<Top>,
     filter_error: Top,
 }
@@ -118,14 +123,14 @@ fn fit(flights: &[Flight], reference: &Reference) -> Result<Fitted, Error> {
     };
     let first = first_guess(&problem);
     let filter_error_from = |unknown: Unknown| {
-        // With process noise, what was taken for a bad sensor need not be one.
+        // With process noise, large residuals need not come from a bad sensor.
         let measured =
             std::array::from_fn(|output| unknown.measured[output].min(expected_measured[output]));
         climb(&problem, Unknown { process: Some(expected_process), measured, ..unknown })
     };
     let output_error = climb(&problem, first).ok();
     let starts = output_error.iter().map(|top| top.unknown).chain([first]);
-    // Without corrections, turbulence and motion that grows may have led astray: a filter's corrections lead back.
+    // Without corrections, turbulence and unstable motion may have led astray: the filter's corrections lead back.
     let filter_error =
         starts.map(filter_error_from).find_map(Result::ok).ok_or(Error::NotConverged)?;
     let calm = Unknown { process: None, ..filter_error.unknown };
@@ -136,10 +141,11 @@ fn fit(flights: &[Flight], reference: &Reference) -> Result<Fitted, Error> {
     Ok(Fitted { problem, first, output_error, filter_error })
 }
 
-/// Identifies the linear model that explains these flights of an aircraft: least squares, then output error, then filter error.
+/// Identifies the linear model that explains these flights of an aircraft, by least squares, then output error, then
+/// filter error.
 ///
 /// # Errors
-/// [`Error`]: what is missing in the flights, or that no linear model explains them.
+/// [`Error`]: what the flights lack, or that no linear model explains them.
 pub fn identify(flights: &[Flight], airplane: Option<&Airplane>) -> Result<Identified, Error> {
     if airplane.is_some_and(|airplane| !airplane.is_possible()) {
         return Err(Error::NotPositive);
@@ -215,7 +221,7 @@ pub fn identify(flights: &[Flight], airplane: Option<&Airplane>) -> Result<Ident
     })
 }
 
-/// Identifies from the first part of each flight and tests on the rest; none if a part tells nothing.
+/// Identifies from the first part of each flight and tests on the rest; `None` if either part is insufficient.
 fn validation(flights: &[Flight]) -> Option<Vec<Fit>> {
     let (before, after) = divided(flights, IDENTIFIED);
     let reference = Reference::of(&before).ok()?;

@@ -1,4 +1,4 @@
-//! The Kalman filter along a stretch, and what its innovations owe to what was not known at the start.
+//! The Kalman filter along a stretch, and the dependence of its innovations on the unknown initial conditions.
 
 use std::collections::HashMap;
 
@@ -7,34 +7,34 @@ use nalgebra::{Matrix4, RowVector4, SMatrix, Vector4};
 use crate::flight::{OUTPUTS, Segment};
 use crate::structure::Structure;
 
-/// What a stretch does not tell in advance, and its innovations are linear in: the first state, a constant part of ẋ, and what az
-/// and ax are off.
+/// Number of unknowns of a stretch in which its innovations are linear: the initial state, a constant part of ẋ, and
+/// the offsets of az and ax.
 pub(crate) const UNKNOWNS: usize = 10;
-/// What is expected of them: a flight near its reference, moderate errors of sensors.
+/// Prior standard deviations of these unknowns: a flight near its reference, moderate sensor errors.
 pub(crate) const EXPECTED: [f64; UNKNOWNS] = [0.2, 0.3, 20.0, 0.5, 0.05, 0.3, 1.0, 0.05, 1.0, 1.0];
 const COLUMNS: usize = UNKNOWNS + 1;
 
-/// A measurement before it is used.
+/// The innovation of a measurement, before its update.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Innovation {
-    /// Which output.
+    /// Index of the output.
     pub(crate) output: usize,
-    /// Which sample.
+    /// Index of the sample.
     pub(crate) sample: usize,
-    /// Measured less predicted; and by how much more of each unknown that grows.
+    /// The measurement minus its prediction, followed by the derivatives with respect to the unknowns.
     pub(crate) value: [f64; COLUMNS],
     pub(crate) variance: f64,
 }
 
-/// A model, and the noise that it is believed to have.
+/// A model with its assumed noise.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Filter<'a> {
     pub(crate) structure: &'a Structure,
-    /// Spectral density of the noise on ẋ.
+    /// Spectral densities of the noise on ẋ.
     pub(crate) process: [f64; 4],
-    /// Variance of each output's.
+    /// Variance of the noise of each output.
     pub(crate) measured: [f64; OUTPUTS],
-    /// By how much inputs come late, s.
+    /// Delay of the inputs, s.
     pub(crate) delay: f64,
 }
 
@@ -55,7 +55,7 @@ impl Filter<'_> {
         let whole = (block * interval).exp();
         let states: Matrix4<f64> = whole.fixed_view::<4, 4>(0, 0).into_owned();
         let density = Matrix4::from_diagonal(&Vector4::from(self.process));
-        // Simpson's rule: over an interval the motion is a parabola.
+        // Simpson's rule: the integrand is approximated by a parabola.
         let half: Matrix4<f64> = (a * (interval / 2.0)).exp();
         let between = half * density * half.transpose() * 4.0;
         let noise = (density + between + states * density * states.transpose()) * (interval / 6.0);
@@ -67,10 +67,10 @@ impl Filter<'_> {
         }
     }
 
-    /// Follows a stretch: what is measured at each time, one output after the other.
+    /// Filters a stretch: the innovations at each time, one output after the other.
     pub(crate) fn innovations(&self, segment: &Segment) -> Vec<Innovation> {
         let Structure { c, d, .. } = self.structure;
-        // A held input is half an interval late on average, but acts at once.
+        // A held input is half an interval late on average, but acts immediately.
         let late = (self.delay - 0.5 * segment.interval()).max(0.0);
         let is_noisy = self.process.iter().any(|density| *density > 0.0);
         let mut steps: HashMap<i64, Step> = HashMap::new();

@@ -1,4 +1,4 @@
-//! How well a model explains the flights, with whatever each of them begins with.
+//! How well a model explains the flights, with the likeliest initial conditions of each stretch.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -8,47 +8,47 @@ use crate::innovations::{EXPECTED, Filter, Innovation, UNKNOWNS};
 use crate::parameter::{COUNT, Prior};
 use crate::structure::Structure;
 
-/// Logarithms of noise are expected within this factor's of the first guess.
+/// Prior standard deviation of the logarithms of noise densities and variances about their first guess.
 const NOISE_SPREAD: f64 = 3.0;
 
-/// All that is to be found.
+/// All quantities to be estimated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Unknown {
-    /// See [`crate::parameter::PARAMETERS`].
+    /// Values of [`crate::parameter::PARAMETERS`].
     pub(crate) derivative: [f64; COUNT],
-    /// Logarithms of the spectral densities of the noise on ẋ; none without.
+    /// Logarithms of the spectral densities of the noise on ẋ; `None` without process noise.
     pub(crate) process: Option<[f64; 4]>,
-    /// Logarithms of the variances of the outputs, beyond their floors.
+    /// Logarithms of the output variances in excess of their floors.
     pub(crate) measured: [f64; OUTPUTS],
 }
 
-/// What flights there are, and what was known before.
+/// The flights and the priors.
 #[derive(Debug, Clone)]
 pub(crate) struct Problem {
     pub(crate) reference: Reference,
     pub(crate) segments: Vec<Segment>,
     pub(crate) priors: [Prior; COUNT],
-    /// The least variance that outputs are believed to have.
+    /// Lower limits of the output variances.
     pub(crate) floors: [f64; OUTPUTS],
-    /// Where the noise is expected: logarithms.
+    /// Prior means of the noise parameters (logarithms).
     pub(crate) expected_process: [f64; 4],
     pub(crate) expected_measured: [f64; OUTPUTS],
 }
 
-/// The innovations of a model.
+/// A model's innovations and cost.
 #[derive(Debug, Clone)]
 pub(crate) struct Explained {
-    /// The negative logarithm of likelihood and priors, up to a constant.
+    /// The negative log-likelihood plus the negative log-priors, up to a constant.
     pub(crate) cost: f64,
-    /// Of every measurement, and then of every expectation: how far off it is.
+    /// The deviation of every measurement, then that of every prior.
     pub(crate) off: Vec<f64>,
-    /// … and the variance of that.
+    /// The variance of each deviation.
     pub(crate) variance: Vec<f64>,
-    /// What each stretch began with.
+    /// The likeliest unknowns of each stretch.
     pub(crate) linear: Vec<[f64; UNKNOWNS]>,
 }
 
-/// The places of a coordinate of the search.
+/// A coordinate of the search, with its index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Coordinate {
     Derivative(usize),
@@ -68,7 +68,7 @@ impl Problem {
         }
     }
 
-    /// What is searched for.
+    /// The coordinates of the search.
     pub(crate) fn coordinates(&self, unknown: &Unknown) -> Vec<Coordinate> {
         let free = (0..COUNT).filter(|&which| self.priors[which].fixed.is_none());
         let process = (0..4).filter(|_| unknown.process.is_some());
@@ -79,7 +79,7 @@ impl Problem {
             .collect()
     }
 
-    /// What is expected of a coordinate: mean and deviation.
+    /// The prior mean and standard deviation of a coordinate.
     pub(crate) fn expected(&self, coordinate: Coordinate) -> (f64, f64) {
         match coordinate {
             Coordinate::Derivative(which) => (self.priors[which].mean, self.priors[which].sigma),
@@ -88,7 +88,7 @@ impl Problem {
         }
     }
 
-    /// Follows all stretches.
+    /// Filters all stretches.
     pub(crate) fn explain(&self, unknown: &Unknown) -> Result<Explained, Error> {
         let structure = Structure::of(&unknown.derivative, &self.reference);
         let filter = self.filter(unknown, &structure);
@@ -118,7 +118,7 @@ impl Problem {
     }
 }
 
-/// An innovation once the unknowns are known.
+/// The innovation with the unknowns inserted.
 pub(crate) fn settled(innovation: &Innovation, unknowns: &[f64; UNKNOWNS]) -> f64 {
     let [value, rest @ ..] = innovation.value;
     value + rest.iter().zip(unknowns).map(|(part, unknown)| part * unknown).sum::<f64>()

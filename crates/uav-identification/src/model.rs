@@ -1,4 +1,4 @@
-//! The model as a filter takes it.
+//! The model in the form that a filter reads.
 
 use kestirim_uav_longitudinal::StateSpace;
 use nalgebra::{Matrix4, RowVector4, SMatrix, SVector, Vector2, Vector4};
@@ -8,35 +8,40 @@ use crate::flight::{FITTED, Flight, OUTPUTS, Reference, spread};
 use crate::innovations::{Filter, UNKNOWNS};
 use crate::structure::{Structure, inverse};
 
-/// Of what else the log may have, kinematics says what it is.
+/// Further columns of the log, which kinematics relates to the states.
 pub(crate) const DERIVED: [&str; 3] = ["qbar", "climb", "V_ground"];
-/// What a steady flight may differ in from the one that was recorded, of ẋ: its deviation, and how it wanders per √s.
+/// Prior of the constant part of ẋ, by which a steady flight may differ from the recorded one: initial standard
+/// deviations, and random-walk rates per √s.
 const AFFINE: ([f64; 4], [f64; 4]) = ([0.005, 0.01, 0.3, 0.0], [1e-3, 1e-4, 0.02, 0.0]);
-/// Of a gyro, a pitch angle and an accelerometer from flight to flight, rad/s, rad and m/s², with their wandering.
+/// Variation of the biases of gyro, pitch angle and accelerometer from flight to flight, rad/s, rad and m/s², with
+/// their random walks.
 const BIASES: [(&str, Drift); 3] = [
     ("q", Drift { sigma: 0.02, rate: 1e-5 }),
     ("theta", Drift { sigma: 0.03, rate: 1e-5 }),
     ("az", Drift { sigma: 0.05, rate: 0.01 }),
 ];
-/// Of the air, in parts, where the dynamic pressure is measured.
+/// Relative variation of the air density, where the dynamic pressure is measured.
 const DENSITY: Drift = Drift { sigma: 0.03, rate: 5e-4 };
-/// Of the head wind where only the speed over ground is measured beside, m/s.
+/// Prior of the head wind where the speed over ground is measured besides the airspeed, m/s.
 const WIND: Drift = Drift { sigma: 8.0, rate: 0.1 };
-/// Outputs that grow with the dynamic pressure.
+/// Outputs that are proportional to the dynamic pressure.
 const SCALED: [&str; 2] = ["az", "qbar"];
-/// Columns that are looked at and not written: ax tells the drag, which is told worse than the lift.
+/// A column that is fitted but not written to the model: ax shows the drag, which is determined less well than the
+/// lift.
 const UNWRITTEN: &str = "ax";
-/// Correlation of neighbouring residuals beyond which noise is not widened further.
+/// Largest correlation of successive residuals that is allowed for when the noise is widened.
 const MOST_COLOURED: f64 = 0.9;
-/// Part of what a linear model says that another flight contradicts, of deviations as in this one, …
+/// Relative error of a linear model on another flight, for deviations as large as in this one.
 const WRONG: f64 = 0.07;
-/// … for so long, s.
+/// Duration of such deviations, s.
 const LASTING: f64 = 0.5;
-/// No model is better, as spectral densities on ẋ: air is never quite calm.
+/// Lower limits of the spectral densities on ẋ: air is never quite calm.
 const LEAST_PROCESS: [f64; 4] = [1e-8, 1e-5, 4e-4, 1e-9];
 
-/// A linear model of deviations from a steady flight, ẋ = A·x + B·u, y = C·x + D·u, of states α (rad, as the vane shows it),
-/// q (rad/s), V (m/s), θ (rad) and inputs elevator (rad) and throttle (0 to 1). Serialised it is a `model.json`.
+/// A linear model of deviations from a steady flight, ẋ = A·x + B·u, y = C·x + D·u.
+///
+/// The states are α (rad, as the vane shows it), q (rad/s), V (m/s) and θ (rad), the inputs elevator (rad) and
+/// throttle (0 to 1). Its serialised form is a `model.json`.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Model {
@@ -52,23 +57,23 @@ pub struct Model {
     /// D: a row for each output.
     #[cfg_attr(feature = "serde", serde(rename = "D"))]
     pub d: Vec<[f64; 2]>,
-    /// Columns of the log.
+    /// Names of the outputs: columns of the log.
     pub outputs: Vec<&'static str>,
-    /// The steady flight that deviations are counted from.
+    /// The steady flight from which deviations are counted.
     pub trim: Trim,
-    /// How much is not told by the model.
+    /// The noise of model and outputs.
     pub noise: Noise,
-    /// Outputs that grow with the dynamic pressure.
+    /// Outputs that are proportional to the dynamic pressure.
     pub scaled: Vec<&'static str>,
-    /// What sensors may be off from flight to flight.
+    /// Sensor biases that vary from flight to flight.
     pub bias: Vec<Bias>,
-    /// Head wind, m/s, if the speed over ground is an output.
+    /// Prior of the head wind, m/s, if the speed over ground is an output.
     pub wind: Option<Drift>,
-    /// Density of the air, in parts, if the dynamic pressure is an output.
+    /// Prior of the relative error of the air density, if the dynamic pressure is an output.
     pub density: Option<Drift>,
-    /// A constant part of ẋ.
+    /// Prior of a constant part of ẋ.
     pub affine: Affine,
-    /// Turbulence.
+    /// Turbulence parameters.
     pub gust: Gust,
 }
 
@@ -76,11 +81,11 @@ pub struct Model {
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Trim {
-    /// α, q, V, θ.
+    /// The states α, q, V, θ.
     pub x: [f64; 4],
-    /// Elevator, throttle.
+    /// The inputs elevator and throttle.
     pub u: [f64; 2],
-    /// What each output shows in it.
+    /// Value of each output in the steady flight.
     pub y: Vec<f64>,
 }
 
@@ -88,54 +93,54 @@ pub struct Trim {
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Noise {
-    /// Spectral density on ẋ, squared units per second.
+    /// Spectral densities on ẋ, squared units per second.
     pub process: [f64; 4],
     /// Standard deviation of each output.
     pub outputs: Vec<f64>,
 }
 
-/// What may be off.
+/// Prior of a slowly varying error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Drift {
-    /// Deviation at the start.
+    /// Initial standard deviation.
     pub sigma: f64,
-    /// How it wanders, per √s.
+    /// Random-walk rate, per √s.
     pub rate: f64,
 }
 
-/// What an output is off.
+/// Prior of an output's bias.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Bias {
-    /// Which output.
+    /// The output.
     pub of: &'static str,
-    /// By how much.
+    /// Its initial standard deviation and random walk.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub drift: Drift,
 }
 
-/// A constant part of ẋ.
+/// Prior of a constant part of ẋ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Affine {
-    /// Deviation at the start.
+    /// Initial standard deviations.
     pub sigma: [f64; 4],
-    /// How it wanders, per √s.
+    /// Random-walk rates, per √s.
     pub rate: [f64; 4],
 }
 
-/// Turbulence: deviations (m/s) and lengths (m) along and across the path.
+/// Turbulence: standard deviations (m/s) and length scales (m) along and across the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Gust {
-    /// Along.
+    /// Standard deviation along the path, m/s.
     pub sigma_u: f64,
-    /// Across.
+    /// Standard deviation across the path, m/s.
     pub sigma_w: f64,
-    /// Along.
+    /// Length scale along the path, m.
     pub length_u: f64,
-    /// Across.
+    /// Length scale across the path, m.
     pub length_w: f64,
 }
 
@@ -145,8 +150,8 @@ impl Default for Gust {
     }
 }
 
-/// Where the model flies steadily, next to what was flown: A·x + B·u = −constant with the least of each beside how much it
-/// moved.
+/// The model's steady flight nearest to the recorded mean: the solution of A·x + B·u = −constant of least norm, with
+/// each variable relative to how much it moved.
 fn steady(
     structure: &Structure,
     constant: Vector4<f64>,
@@ -162,7 +167,7 @@ fn steady(
     (step.fixed_rows::<4>(0).into_owned(), step.fixed_rows::<2>(4).into_owned())
 }
 
-/// A row of what kinematics says of a state.
+/// The row of C, in true states, of an output that kinematics relates to the states.
 fn derived(name: &str, reference: &Reference, pressure: f64) -> RowVector4<f64> {
     let [alpha, _, airspeed, theta] = reference.state;
     let (sin, cos) = (theta - alpha).sin_cos();
@@ -174,7 +179,7 @@ fn derived(name: &str, reference: &Reference, pressure: f64) -> RowVector4<f64> 
 }
 
 impl Model {
-    /// What was found, `linear` being what each stretch began with.
+    /// Creates the model from the estimates; `linear` holds the unknowns of each stretch.
     pub(crate) fn of(
         flights: &[Flight],
         reference: &Reference,
@@ -225,7 +230,7 @@ impl Model {
             let off = if output >= 4 { mean(4 + output) } else { 0.0 };
             let shown = at[output] + off + (row * x)[0] + (through * u)[0];
             let (c, d) = ([row[0], row[1], row[2], row[3]], [through[0], through[1]]);
-            // A filter takes noise for white: that of coloured residuals counts as much more.
+            // A filter assumes white noise: the variance of coloured residuals is increased accordingly.
             let next = whiteness[output].map_or(0.0, |it| it.next.clamp(0.0, MOST_COLOURED));
             let coloured = (1.0 + next) / (1.0 - next);
             let sigma = (coloured * filter.measured[output]).sqrt();
@@ -253,7 +258,7 @@ impl Model {
         self.noise.outputs.push(sigma);
     }
 
-    /// Adds an output that is known from states, with what it is off on average, and how much.
+    /// Adds an output that is a function of the states, with its mean error and the standard deviation of that.
     fn derive(
         &mut self,
         name: &'static str,
@@ -286,7 +291,7 @@ fn rows4(matrix: &Matrix4<f64>) -> [[f64; 4]; 4] {
     std::array::from_fn(|row| std::array::from_fn(|column| matrix[(row, column)]))
 }
 
-/// How much states and inputs moved.
+/// Standard deviations of states and inputs, with lower limits.
 fn moved(flights: &[Flight]) -> [f64; 6] {
     let least = [1e-3, 1e-3, 0.1, 1e-3, 1e-4, 1e-4];
     std::array::from_fn(|which| {

@@ -1,14 +1,14 @@
-//! Pure numbers, which hold for other speeds and heights and can be held against tables.
+//! Dimensionless coefficients, which hold for other speeds and heights and can be compared with tables.
 
 use crate::identify::{Known, Parameter};
 use crate::model::Model;
 use crate::parameter::at;
 use crate::structure::GRAVITY;
 
-/// Size, mass and air of the aircraft.
+/// Size, mass and air density of an aircraft.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Airplane {
-    /// m, kg.
+    /// Mass m, kg.
     pub mass: f64,
     /// Moment of inertia about the body's y axis, kg·m².
     pub inertia: f64,
@@ -20,7 +20,7 @@ pub struct Airplane {
     pub density: f64,
 }
 
-/// A coefficient, per radian (`CL_q`, `Cm_q`: of the pure number q·c/(2V)).
+/// An aerodynamic coefficient, per radian (`CL_q`, `Cm_q`: per unit of the dimensionless rate q·c/(2V)).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Coefficient {
@@ -39,8 +39,8 @@ impl Airplane {
     }
 }
 
-/// Of lift, pitching moment and drag, from what the flight tells of α̇, q̇ and V̇. Drag's share of the slope of the lift
-/// (`CL_alpha` is without `CD` + `CT`) is not told apart.
+/// The coefficients of lift, pitching moment and drag, from the parameters of α̇, q̇ and V̇. The part of the lift
+/// slope that is due to drag and thrust (`CD` + `CT`) is not separated from `CL_alpha`.
 pub(crate) fn coefficients(
     airplane: &Airplane,
     parameters: &[Parameter],
@@ -54,7 +54,7 @@ pub(crate) fn coefficients(
     let force = mass / (pressure * area);
     let moment = inertia / (pressure * area * chord);
     let turning = 2.0 * airspeed / chord;
-    // What weight does as the path turns is none of the air's.
+    // The contribution of the weight as the path turns is not aerodynamic.
     let rows = [
         ("CL_alpha", at::Z_ALPHA, -force * airspeed, GRAVITY * sin_climb / airspeed),
         ("CL_q", at::Z_RATE, -force * airspeed * turning, 0.0),

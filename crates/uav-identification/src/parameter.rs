@@ -1,4 +1,4 @@
-//! What is to be found out, and what is expected of any aircraft before.
+//! The parameters to be estimated, and their priors for any aircraft.
 
 use crate::flight::Reference;
 use crate::structure::GRAVITY;
@@ -6,10 +6,10 @@ use crate::structure::GRAVITY;
 /// Names of the states: angle of attack, pitch rate, airspeed, pitch angle.
 pub const STATES: [&str; 4] = ["alpha", "q", "V", "theta"];
 
-/// How many parameters there are.
+/// Number of parameters.
 pub(crate) const COUNT: usize = 20;
 
-/// Names and units.
+/// Names and units of the parameters.
 pub(crate) const PARAMETERS: [(&str, &str); COUNT] = [
     ("Z_alpha", "1/s"),
     ("Z_q", "1"),
@@ -33,7 +33,7 @@ pub(crate) const PARAMETERS: [(&str, &str); COUNT] = [
     ("delay", "s"),
 ];
 
-/// Places among the [`PARAMETERS`].
+/// Indices into [`PARAMETERS`].
 pub(crate) mod at {
     pub(crate) const Z_ALPHA: usize = 0;
     pub(crate) const Z_RATE: usize = 1;
@@ -57,17 +57,17 @@ pub(crate) mod at {
     pub(crate) const DELAY: usize = 19;
 }
 
-/// What is known of a parameter before the flight.
+/// The prior of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Prior {
     pub(crate) mean: f64,
     pub(crate) sigma: f64,
-    /// Why nothing in the log can tell it: it stays at its mean.
+    /// The reason why nothing in the log determines it, so that it stays at its mean.
     pub(crate) fixed: Option<&'static str>,
 }
 
-/// Of any aircraft that flies so fast: the lift carries the weight, so that forces are some g, and lift and drag grow with V².
-/// Moments may be those of a glider or of a dart.
+/// Priors for any aircraft that flies at this speed: the lift carries the weight, so that forces are some g, and lift
+/// and drag grow with V². Moments may be those of a glider or of a dart.
 pub(crate) fn priors(reference: &Reference) -> [Prior; COUNT] {
     let airspeed = reference.state[2];
     let turn = GRAVITY / airspeed;

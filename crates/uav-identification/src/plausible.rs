@@ -1,6 +1,6 @@
-//! What no sound log of a flight holds: sensors that stand still, other units, signs the other way.
+//! Checks for what no sound log of a flight contains: stuck sensors, wrong units, reversed signs.
 //!
-//! A model is fitted to these as well, with small standard errors: they are refused before.
+//! Such logs would be fitted as well, with small standard errors; they are refused beforehand.
 
 use std::f64::consts::FRAC_PI_3;
 use std::ops::RangeInclusive;
@@ -13,23 +13,26 @@ use crate::model::DERIVED;
 use crate::parameter::at;
 use crate::structure::GRAVITY;
 
-/// What az is on average over what it is in steady level flight. Climbs take from it, turns add (at 45° of bank 1.4).
+/// Plausible ratio of the mean az to that in steady level flight. Climbs reduce it, turns increase it (1.4 at 45° of
+/// bank).
 const FORCE: RangeInclusive<f64> = 0.6..=1.5;
-/// Density of air, kg/m³: at 12 km of height and in great cold at sea level, with room for pitots that are not calibrated.
+/// Plausible air density, kg/m³: from 12 km of height to great cold at sea level, with a margin for uncalibrated
+/// pitot tubes.
 const DENSITY: RangeInclusive<f64> = 0.2..=2.0;
-/// No elevator is turned farther, and no wing flies or climbs at more in the mean, rad.
+/// Largest plausible elevator deflection, and root mean square of angle of attack and pitch angle, rad.
 const FARTHEST: f64 = FRAC_PI_3;
-/// Scales of two sensors of one motion. Radians beside degrees are 57, knots 1.9, km/h 3.6; a scale error of a sensor is
-/// some hundredths.
+/// Plausible scales of two sensors of the same motion. Radians and degrees differ by 57, m/s from knots by 1.9 and
+/// from km/h by 3.6; the scale error of a sensor is some hundredths.
 const SCALE: RangeInclusive<f64> = 0.67..=1.5;
-/// Gusts change α and V without a force that lasts, so that less of the expected motion is seen, down to none.
+/// Plausible scales where gusts change α and V without a lasting force, so that less of the expected motion is seen,
+/// down to none.
 const SCALE_IN_GUSTS: RangeInclusive<f64> = -0.3..=1.5;
-/// A finding stands if it is so many of its standard errors beyond what is plausible.
+/// Number of standard errors beyond the plausible range at which a contradiction is reported.
 const CLEAR: f64 = 5.0;
-/// An elevator that does something is told by so many standard errors.
+/// Smallest ratio of the elevator's effect to its standard error.
 const EFFECT: f64 = 3.0;
 
-/// Refuses flights that no aircraft with working sensors has flown.
+/// Refuses flights that no aircraft with working sensors can have flown.
 pub(crate) fn check(flights: &[Flight], compatibility: &Compatibility) -> Result<(), Error> {
     let is_twice = |(place, flight): (usize, &Flight)| flights[..place].contains(flight);
     if flights.iter().enumerate().any(is_twice) {
@@ -62,7 +65,7 @@ fn check_columns(flight: &Flight) -> Result<(), Error> {
         }
     }
     let turned = flight.inputs.iter().map(|input| input[0].abs()).fold(0.0, f64::max);
-    // Mean and deviation.
+    // Mean and standard deviation.
     let of = |name: &str| Some(spread(flight.column(name)?.iter().flatten().copied()));
     let mean = |name: &str| of(name).map(|(mean, _)| mean);
     let mean_square = |name: &str| of(name).map_or(0.0, |(mean, spread)| mean.hypot(spread));
@@ -82,7 +85,7 @@ fn check_columns(flight: &Flight) -> Result<(), Error> {
     Ok(())
 }
 
-/// Refuses a model whose elevator turns nothing: another column stands in its place, or its times are another clock's.
+/// Refuses a model whose elevator has no effect: the column is another one's, or its times are from another clock.
 pub(crate) fn check_effect(parameters: &[Parameter]) -> Result<(), Error> {
     let Parameter { value, sigma, known, .. } = parameters[at::M_ELEVATOR];
     if known == Known::Identified && value.abs() < EFFECT * sigma {

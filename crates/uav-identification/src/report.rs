@@ -1,4 +1,4 @@
-//! What was found, in words and tables.
+//! The result, in words and tables.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -6,16 +6,16 @@ use crate::compatibility::Comparison;
 use crate::fit::Fit;
 use crate::identify::{Correlation, Identified, Known, Parameter};
 
-/// Residuals whose neighbours are correlated less than this are nearly white.
+/// Smallest correlation of successive residuals at which they are reported as coloured.
 const COLOURED: f64 = 0.3;
-/// Of pairs that are nearly one, the first few tell enough.
+/// Largest number of correlated pairs that are reported.
 const MOST_PAIRS: usize = 4;
-/// A scale or a delay is told if it is off by so many of its standard errors.
+/// Number of standard errors from the nominal value at which a scale or a delay is reported.
 const CLEAR: f64 = 3.0;
 
 impl Identified {
-    /// What a user should know, a sentence each: what this flight does not tell, what sensors contradict, how far the model can
-    /// be trusted.
+    /// Remarks for the user, a sentence each: what these flights do not determine, which sensors contradict each
+    /// other, how far the model can be trusted.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         let of = |known: &Known| {

@@ -1,4 +1,4 @@
-//! Fisher's scoring: Gauss and Newton's method for innovations whose variance is to be found as well.
+//! Fisher scoring: the Gauss-Newton method for innovations whose variance is estimated as well.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,25 +7,25 @@ use crate::likelihood::{Coordinate, Explained, Problem, Unknown};
 
 const MOST_STEPS: usize = 60;
 const MOST_TRIES: usize = 8;
-/// Differences are taken over this part of what is expected.
+/// Step of the finite differences, relative to the prior standard deviation.
 const STEP: f64 = 1e-4;
-/// A logarithm of a noise goes no farther in a step.
+/// Largest change of a noise logarithm in a step.
 const LONGEST: f64 = 2.0;
-/// A step that gains less than this of a logarithm of likelihood is the last.
+/// Gain of log-likelihood below which the iteration ends.
 const LEAST_GAIN: f64 = 0.02;
 
-/// The top of the likelihood.
+/// The maximum of the likelihood.
 #[derive(Debug, Clone)]
 pub(crate) struct Top {
     pub(crate) unknown: Unknown,
     pub(crate) coordinates: Vec<Coordinate>,
     pub(crate) explained: Explained,
-    /// By how much each innovation grows with each coordinate.
+    /// Derivatives of each innovation with respect to each coordinate.
     pub(crate) slopes: DMatrix<f64>,
     pub(crate) information: DMatrix<f64>,
 }
 
-/// Innovations' slopes, the gradient of the cost, and what is known.
+/// The innovations' derivatives, the gradient of the cost, and the information matrix.
 type Linear = (DMatrix<f64>, DVector<f64>, DMatrix<f64>);
 
 fn linear(
@@ -65,7 +65,7 @@ fn linear(
     Ok((slopes, gradient, information))
 }
 
-/// Climbs from a first guess.
+/// Maximises the likelihood from a first guess.
 pub(crate) fn climb(problem: &Problem, mut unknown: Unknown) -> Result<Top, Error> {
     let coordinates = problem.coordinates(&unknown);
     let mut explained = problem.explain(&unknown)?;

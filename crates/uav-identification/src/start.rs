@@ -1,4 +1,4 @@
-//! Equation error: a first guess by least squares, from slopes of what was measured.
+//! Equation error: a first guess by least squares, from the slopes of the measured signals.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,23 +7,24 @@ use crate::likelihood::{Problem, Unknown};
 use crate::parameter::{COUNT, at};
 use crate::structure::GRAVITY;
 
-/// Signals are averaged over this time before slopes are taken, s.
+/// Duration over which signals are averaged and their slopes taken, s.
 const WINDOW_S: f64 = 0.2;
-/// What a third difference of white noise of variance 1 has.
+/// Variance of the third difference of unit white noise.
 const OF_THIRD_DIFFERENCE: f64 = 20.0;
-/// First deviations of the noise on ẋ of a flight in quiet air, per square root of a second.
+/// Initial standard deviations of the noise on ẋ in quiet air, per √s.
 const PROCESS: [f64; 4] = [1e-3, 3e-3, 0.05, 3e-4];
 
-/// No sensor of an aircraft is better (rad, rad/s, m/s, rad, m/s²): what is less is how well a linear model can fit at all.
+/// Smallest standard deviations of an aircraft's sensors (rad, rad/s, m/s, rad, m/s²), which also limit how well a
+/// linear model can fit.
 const BEST: [f64; OUTPUTS] = [5e-4, 5e-4, 0.05, 3e-4, 0.05, 0.05];
 
-/// The least variance that outputs are believed to have.
+/// Lower limits of the output variances.
 pub(crate) fn floors() -> [f64; OUTPUTS] {
     BEST.map(|sigma| sigma * sigma)
 }
 
-/// Logarithms of the noise that is expected before anything is known: on ẋ, and of outputs, where what changes between
-/// neighbours as no motion does is the sensor's.
+/// Prior means of the noise logarithms: on ẋ, and of the outputs, where changes between neighbouring samples that no
+/// motion explains are attributed to the sensor.
 pub(crate) fn expected_noise(segments: &[Segment]) -> ([f64; 4], [f64; OUTPUTS]) {
     let measured = std::array::from_fn(|output| {
         let differences = segments.iter().flat_map(|segment| {
@@ -38,7 +39,7 @@ pub(crate) fn expected_noise(segments: &[Segment]) -> ([f64; 4], [f64; OUTPUTS])
     (PROCESS.map(|sigma| 2.0 * sigma.ln()), measured)
 }
 
-/// A signal along a stretch, averaged, with its slope.
+/// A signal along a stretch, smoothed, with its slope.
 struct Smooth {
     value: Vec<f64>,
     slope: Vec<f64>,
@@ -64,7 +65,7 @@ fn smooth(times: &[f64], values: &[f64]) -> Smooth {
     smooth
 }
 
-/// An output along a stretch; between measurements, the last one holds.
+/// An output along a stretch, held between measurements.
 fn held(segment: &Segment, output: usize) -> Vec<f64> {
     let mut last = segment.measured.iter().find_map(|of| of[output]).unwrap_or(0.0);
     let values = segment.measured.iter().map(|of| {
@@ -74,7 +75,7 @@ fn held(segment: &Segment, output: usize) -> Vec<f64> {
     values.collect()
 }
 
-/// Least squares, drawn to what is expected: row by row of ẋ.
+/// Regularised least squares with the priors, separately for each row of ẋ.
 pub(crate) fn first_guess(problem: &Problem) -> Unknown {
     let Problem { reference, priors, .. } = problem;
     let mut derivative: [f64; COUNT] = std::array::from_fn(|which| priors[which].mean);
@@ -117,7 +118,7 @@ pub(crate) fn first_guess(problem: &Problem) -> Unknown {
             derivative[places[column]] = found[row];
         }
     }
-    // Larger than the noise: of a first guess everything is explained badly.
+    // Larger than the noise, since a first guess explains everything badly.
     let measured = std::array::from_fn(|output| {
         let values = problem
             .segments
@@ -128,7 +129,7 @@ pub(crate) fn first_guess(problem: &Problem) -> Unknown {
     Unknown { derivative, process: None, measured }
 }
 
-/// Lines of the least squares of a stretch, each less its mean.
+/// Collects the least-squares rows of a stretch, with their means removed.
 fn collect(
     reference: &Reference,
     segment: &Segment,
@@ -138,7 +139,7 @@ fn collect(
 ) {
     let of = |values: &[f64]| smooth(&segment.times, values);
     let airspeed = reference.state[2];
-    // Without a vane, the force across the path stands for α.
+    // Without a vane, the force across the path replaces α.
     let alpha = if reference.has[0] {
         held(segment, 0)
     } else {

@@ -1,30 +1,30 @@
-//! Matrices of the linear motion from its derivatives: what is kinematics is exact.
+//! Matrices of the linear motion from its derivatives, with exact kinematics.
 
 use nalgebra::{Matrix4, RowVector2, RowVector4, SMatrix};
 
 use crate::flight::{OUTPUTS, Reference};
 use crate::parameter::{COUNT, at};
 
-/// g, m/s².
+/// Standard gravity g, m/s².
 pub(crate) const GRAVITY: f64 = 9.806_65;
 
-/// A linear model of deviations, of the α that the vane shows.
+/// A linear model of deviations, in terms of the α that the vane shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Structure {
     pub(crate) a: Matrix4<f64>,
     pub(crate) b: SMatrix<f64, 4, 2>,
     pub(crate) c: SMatrix<f64, OUTPUTS, 4>,
     pub(crate) d: SMatrix<f64, OUTPUTS, 2>,
-    /// What turns true states into those that are logged.
+    /// The matrix that maps true states to logged ones.
     pub(crate) seen: Matrix4<f64>,
 }
 
 impl Structure {
-    /// Of these values of [`crate::parameter::PARAMETERS`].
+    /// Creates the model from these values of [`crate::parameter::PARAMETERS`].
     ///
-    /// With the specific forces along (`fx`) and across (`fz`) the path, V·(α̇ − q) = `fz` + g·cos γ and V̇ = `fx` − g·sin γ; an
-    /// accelerometer along the body's axes measures these forces turned by α, and the pitch acceleration times its
-    /// distance from the centre of mass.
+    /// With the specific forces along (`fx`) and across (`fz`) the path, V·(α̇ − q) = `fz` + g·cos γ and V̇ = `fx` −
+    /// g·sin γ. An accelerometer along the body's axes measures these forces rotated by α, plus the pitch
+    /// acceleration times its distance from the centre of mass.
     pub(crate) fn of(value: &[f64; COUNT], reference: &Reference) -> Self {
         let [alpha, _, airspeed, theta] = reference.state;
         let [az, ax] = reference.force;
@@ -47,7 +47,7 @@ impl Structure {
             RowVector2::new(value[at::X_ELEVATOR], value[at::X_THROTTLE]),
             RowVector2::zeros(),
         ]);
-        // The weight's part turns with the path: γ = θ − α.
+        // The weight's component rotates with the path: γ = θ − α.
         let path = RowVector4::new(-1.0, 0.0, 0.0, 1.0);
         let rate = RowVector4::new(0.0, 1.0, 0.0, 0.0);
         let turned = RowVector4::new(1.0, 0.0, 0.0, 0.0);
@@ -61,7 +61,7 @@ impl Structure {
         d.set_row(4, &(across_u * cos + along_u * sin - b.row(1) * x));
         c.set_row(5, &(along * cos - across * sin - turned * az + a.row(1) * z));
         d.set_row(5, &(along_u * cos - across_u * sin + b.row(1) * z));
-        // A vane ahead of the centre of mass sees less while the nose goes up.
+        // A vane ahead of the centre of mass measures a smaller angle while the nose rises.
         let mut seen = Matrix4::identity();
         seen[(0, 0)] = value[at::VANE_SCALE];
         seen[(0, 1)] = -value[at::VANE_SCALE] * value[at::VANE_LEAD];
@@ -72,7 +72,7 @@ impl Structure {
     }
 }
 
-/// The inverse of a matrix that differs from one in the first two places of its first row.
+/// The inverse of a matrix that differs from the identity in the first two entries of its first row.
 pub(crate) fn inverse(seen: &Matrix4<f64>) -> Matrix4<f64> {
     let mut back = Matrix4::identity();
     back[(0, 0)] = 1.0 / seen[(0, 0)];

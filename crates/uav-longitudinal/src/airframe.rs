@@ -4,14 +4,15 @@ use crate::published::Published;
 
 /// Size, mass and published coefficients of an aircraft with a propeller in front of its centre of mass.
 ///
-/// Coefficients are those of Beard et al., *Small Unmanned Aircraft: Theory and Practice*, 2012, by their names
-/// there, and so they are named where it is serialised; what the book's tables set to zero throughout (drag by pitch rate, the propeller's torque) is left out.
+/// The coefficients are those of Beard et al., *Small Unmanned Aircraft: Theory and Practice*, 2012, and have the
+/// book's names in the serialised form. Those that the book's tables set to zero throughout (drag due to pitch rate,
+/// the propeller's torque) are omitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "Published", into = "Published"))]
 pub struct Airframe {
-    /// m, kg.
+    /// Mass m, kg.
     pub mass: f64,
     /// Moments of inertia.
     pub inertia: Inertia,
@@ -23,21 +24,21 @@ pub struct Airframe {
     pub chord: f64,
     /// Density of the air ρ, kg/m³.
     pub air_density: f64,
-    /// g, m/s².
+    /// Gravitational acceleration g, m/s².
     pub gravity: f64,
-    /// Lift.
+    /// Lift coefficients.
     pub lift: Lift,
-    /// Drag.
+    /// Drag coefficients.
     pub drag: Drag,
-    /// Pitching moment.
+    /// Coefficients of the pitching moment.
     pub pitch: Pitch,
-    /// Thrust.
+    /// Propeller and motor, which produce the thrust.
     pub propeller: Propeller,
-    /// Side force `C_Y`.
+    /// Coefficients of the side force `C_Y`.
     pub side_force: SideCoefficients,
-    /// Rolling moment `C_ℓ`.
+    /// Coefficients of the rolling moment `C_ℓ`.
     pub rolling: SideCoefficients,
-    /// Yawing moment `C_n`.
+    /// Coefficients of the yawing moment `C_n`.
     pub yawing: SideCoefficients,
 }
 
@@ -46,118 +47,118 @@ pub struct Airframe {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Inertia {
-    /// Jx.
+    /// Moment of inertia Jx about the roll axis.
     pub x: f64,
-    /// Jy.
+    /// Moment of inertia Jy about the pitch axis.
     pub y: f64,
-    /// Jz.
+    /// Moment of inertia Jz about the yaw axis.
     pub z: f64,
-    /// Jxz.
+    /// Product of inertia Jxz.
     pub xz: f64,
 }
 
-/// `C_L` = `C_L0` + `C_Lα`·α + `C_Lq`·c/(2V)·q + `C_Lδe`·δe.
+/// Lift coefficients: `C_L` = `C_L0` + `C_Lα`·α + `C_Lq`·c/(2V)·q + `C_Lδe`·δe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lift {
-    /// `C_L0`.
+    /// Lift coefficient at zero α, q and δe: `C_L0`.
     pub zero: f64,
-    /// `C_Lα`, per radian.
+    /// Lift slope `C_Lα`, per radian.
     pub alpha: f64,
-    /// `C_Lq`.
+    /// Coefficient of the pitch rate, `C_Lq`.
     pub pitch_rate: f64,
-    /// `C_Lδe`, per radian.
+    /// Coefficient of the elevator, `C_Lδe`, per radian.
     pub elevator: f64,
-    /// Stall of the wing; none: the flow stays attached.
+    /// Stall of the wing; if `None`, the flow stays attached.
     pub stall: Option<Stall>,
 }
 
-/// Stall beyond ±α₀, where the wing is a flat plate of lift 2·sign(α)·sin²α·cos α.
+/// Stall beyond ±α₀, where the wing acts as a flat plate with the lift coefficient 2·sign(α)·sin²α·cos α.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Stall {
-    /// α₀, rad.
+    /// Stall angle α₀, rad.
     pub alpha: f64,
-    /// Sharpness of the transition M, per radian.
+    /// Sharpness M of the transition, per radian.
     pub sharpness: f64,
 }
 
-/// Drag, in either of two forms in which it is published.
+/// Drag coefficients, in either of the two published forms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Drag {
-    /// `C_D` = `C_Dp` + (`C_L0` + `C_Lα`·α)²/(π·e·b²/S).
+    /// Parasitic and induced drag: `C_D` = `C_Dp` + (`C_L0` + `C_Lα`·α)²/(π·e·b²/S).
     Induced {
-        /// `C_Dp`.
+        /// Parasitic drag coefficient `C_Dp`.
         parasitic: f64,
-        /// Oswald's efficiency e.
+        /// Oswald's efficiency factor e.
         efficiency: f64,
     },
-    /// `C_D` = `C_D0` + `C_Dα1`·α + `C_Dα2`·α² + `C_Dδe`·δe².
+    /// A polynomial in angle of attack and elevator: `C_D` = `C_D0` + `C_Dα1`·α + `C_Dα2`·α² + `C_Dδe`·δe².
     Polynomial {
-        /// `C_D0`.
+        /// Drag coefficient at zero α and δe: `C_D0`.
         zero: f64,
-        /// `C_Dα1`, per radian.
+        /// Linear coefficient of α, `C_Dα1`, per radian.
         alpha: f64,
-        /// `C_Dα2`, per radian².
+        /// Quadratic coefficient of α, `C_Dα2`, per radian².
         alpha_squared: f64,
-        /// `C_Dδe`, per radian²: of either way alike.
+        /// Quadratic coefficient of the elevator, `C_Dδe`, per radian²: equal for both directions.
         elevator_squared: f64,
     },
 }
 
-/// `C_m` = `C_m0` + `C_mα`·α + `C_mq`·c/(2V)·q + `C_mδe`·δe.
+/// Pitching-moment coefficients: `C_m` = `C_m0` + `C_mα`·α + `C_mq`·c/(2V)·q + `C_mδe`·δe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pitch {
-    /// `C_m0`.
+    /// Moment coefficient at zero α, q and δe: `C_m0`.
     pub zero: f64,
-    /// `C_mα`, per radian.
+    /// Coefficient of the angle of attack, `C_mα`, per radian.
     pub alpha: f64,
-    /// `C_mq`.
+    /// Coefficient of the pitch rate, `C_mq`.
     pub pitch_rate: f64,
-    /// `C_mδe`, per radian.
+    /// Coefficient of the elevator, `C_mδe`, per radian.
     pub elevator: f64,
 }
 
-/// Thrust ½·ρ·`S_prop`·`C_prop`·((`k_motor`·δt)² − V²) along the body's x axis.
+/// Propeller with the thrust ½·ρ·`S_prop`·`C_prop`·((`k_motor`·δt)² − V²) along the body's x axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Propeller {
-    /// `S_prop`, m².
+    /// Swept area `S_prop`, m².
     pub area: f64,
-    /// `C_prop`.
+    /// Thrust coefficient `C_prop`.
     pub coefficient: f64,
-    /// Speed of the air behind it at full throttle `k_motor`, m/s.
+    /// Speed `k_motor` of the air behind the propeller at full throttle, m/s.
     pub motor: f64,
 }
 
-/// Coefficients of a side force or a moment, per radian; rates are multiplied by b/(2V).
+/// Coefficients of a side force or a moment; rates enter multiplied by b/(2V).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SideCoefficients {
-    /// Coefficient of the sideslip angle β, per rad.
+    /// Coefficient of the sideslip angle β, per radian.
     pub sideslip: f64,
-    /// Coefficient of the roll rate p, of its pure number p·b/(2·V).
+    /// Coefficient of the dimensionless roll rate p·b/(2·V).
     pub roll_rate: f64,
-    /// Coefficient of the yaw rate r, of its pure number r·b/(2·V).
+    /// Coefficient of the dimensionless yaw rate r·b/(2·V).
     pub yaw_rate: f64,
-    /// Coefficient of the aileron δa, per rad.
+    /// Coefficient of the aileron δa, per radian.
     pub aileron: f64,
-    /// Coefficient of the rudder δr, per rad.
+    /// Coefficient of the rudder δr, per radian.
     pub rudder: f64,
 }
 
 impl Airframe {
     /// The Aerosonde of the book's appendix E, 13.5 kg, with attached flow.
     ///
-    /// With [`Stall::aerosonde`] its model at 40 m/s changes by 2·10⁻¹⁰ of itself.
+    /// [`Stall::aerosonde`] changes its model at 40 m/s by a relative 2·10⁻¹⁰.
     pub fn aerosonde() -> Self {
         let [side_force, rolling, yawing] = [
             [-0.98, 0.0, 0.0, 0.0, -0.17],
@@ -185,10 +186,10 @@ impl Airframe {
 
     /// The Skywalker X8, a flying wing of 3.364 kg that flies at about 18 m/s.
     ///
-    /// Aerodynamics of K. Gryte, R. Hann, M. Alam, J. Roháč, T. A. Johansen, T. I. Fossen, *Aerodynamic modeling of the Skywalker X8
-    /// fixed-wing unmanned aerial vehicle*, ICUAS 2018, as its authors' parameter file has them: `C_mα`, `C_m0` and
-    /// `C_mδe` after flights, `C_nr` six times that of the paper. Moments of inertia and thrust (the form of Beard et al.,
-    /// 2012) are rough, as they say.
+    /// The aerodynamics are those of K. Gryte, R. Hann, M. Alam, J. Roháč, T. A. Johansen, T. I. Fossen, *Aerodynamic
+    /// modeling of the Skywalker X8 fixed-wing unmanned aerial vehicle*, ICUAS 2018, with the values of its authors'
+    /// parameter file: `C_mα`, `C_m0` and `C_mδe` from flights, `C_nr` six times that of the paper. According to the
+    /// authors, moments of inertia and thrust (in the form of Beard et al., 2012) are rough.
     pub fn skywalker_x8() -> Self {
         let [side_force, rolling, yawing] = [
             [
@@ -242,7 +243,7 @@ impl Airframe {
         }
     }
 
-    /// Whether one can calculate with it.
+    /// Checks that the numbers are finite and, where required, positive.
     pub(crate) fn check(&self) -> Result<(), Error> {
         let Inertia { x, y, z, xz } = self.inertia;
         let Self { mass, wing_area, span, chord, air_density, gravity, drag, propeller, .. } = self;
@@ -279,14 +280,14 @@ impl Airframe {
 }
 
 impl SideCoefficients {
-    /// Of sideslip, roll rate, yaw rate, aileron and rudder.
+    /// Creates the coefficients from those of sideslip, roll rate, yaw rate, aileron and rudder.
     pub(crate) const fn of([sideslip, roll_rate, yaw_rate, aileron, rudder]: [f64; 5]) -> Self {
         Self { sideslip, roll_rate, yaw_rate, aileron, rudder }
     }
 }
 
 impl Stall {
-    /// Stall of the Aerosonde.
+    /// The stall of the Aerosonde.
     pub fn aerosonde() -> Self {
         Self { alpha: 0.4712, sharpness: 50.0 }
     }

@@ -3,7 +3,7 @@
 use core::array::from_fn;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// α, q, V, θ, δe, δt.
+/// Number of variables: α, q, V, θ, δe, δt.
 pub(crate) const VARIABLES: usize = 6;
 
 /// A value and its partial derivatives with respect to states and inputs.
@@ -14,12 +14,12 @@ pub(crate) struct Dual {
 }
 
 impl Dual {
-    /// The variable of this index.
+    /// The independent variable with this index.
     pub(crate) fn variable(value: f64, index: usize) -> Self {
         Self { value, gradient: from_fn(|place| if place == index { 1.0 } else { 0.0 }) }
     }
 
-    /// f(x), from its value and its derivative at x.
+    /// The function value f(x) with its gradient, from the derivative of f at x.
     fn chain(self, value: f64, derivative: f64) -> Self {
         Self { value, gradient: self.gradient.map(|partial| derivative * partial) }
     }
@@ -32,7 +32,7 @@ impl Dual {
         self.chain(libm::cos(self.value), -libm::sin(self.value))
     }
 
-    /// 1/(1 + e⁻ˣ): both tails are exact, and so are their derivatives.
+    /// The logistic function 1/(1 + e⁻ˣ), exact in both tails, as are its derivatives.
     pub(crate) fn logistic(self) -> Self {
         let small = libm::exp(-libm::fabs(self.value));
         let tail = small / (1.0 + small);

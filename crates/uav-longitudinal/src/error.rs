@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Reason for which there is no result.
+/// The reason why there is no result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -8,15 +8,15 @@ use core::fmt;
 pub enum Error {
     /// A number is NaN or infinite.
     NotFinite,
-    /// A mass, an inertia, a size, a density or a speed that must be above zero is not.
+    /// A mass, an inertia, a size, a density or a speed is not positive.
     NotPositive,
-    /// E, or the inertia, has no inverse.
+    /// E, or the inertia matrix, has no inverse.
     Singular,
     /// Newton's method finds no steady flight.
     NotConverged,
-    /// Steady flight would take a throttle below 0 or above 1.
+    /// Steady flight would require a throttle below 0 or above 1.
     BeyondThrottle,
-    /// Steady flight would take an angle of attack beyond the wing's stall.
+    /// Steady flight would require an angle of attack beyond the wing's stall.
     BeyondStall,
     /// A climb angle is not between −π/2 and π/2.
     BeyondVertical,

@@ -1,4 +1,4 @@
-//! The forces along the flight path: steady flight, and what happens near it.
+//! Forces along the flight path: steady flight, and linear models near it.
 
 use core::array::from_fn;
 use core::f64::consts::FRAC_PI_2;
@@ -10,21 +10,22 @@ use crate::dual::Dual;
 use crate::solve::solve;
 use crate::{Airframe, Drag, Error, LongitudinalDerivatives, StateSpace};
 
-/// Newton's method doubles the digits each time; from nothing it takes seven or eight steps.
+/// Limit of Newton's iteration, which doubles the number of digits in each step; from zero it takes seven or eight
+/// steps.
 const MOST_STEPS: u32 = 50;
-/// A step of this size, beside 1 and the unknown, is made of rounding errors.
+/// Size of a step, relative to 1 plus the unknown, that is due to rounding errors alone.
 const LAST_STEP: f64 = 1e-14;
-/// Where nothing is said of a stall, the flow over no plain wing stays attached at this angle of attack, rad.
+/// Largest angle of attack if no stall is given, rad: there the flow over no plain wing stays attached any more.
 const STALLED: f64 = 0.35;
 
-/// A flight straight ahead in which nothing changes but the place.
+/// A straight flight in which only the position changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SteadyFlight {
-    /// V, m/s.
+    /// Airspeed V, m/s.
     pub airspeed: f64,
-    /// γ, rad.
+    /// Climb angle γ, rad.
     pub climb_angle: f64,
 }
 
@@ -33,22 +34,23 @@ pub struct SteadyFlight {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Trim {
-    /// α (rad), q (rad/s), V (m/s), θ (rad).
+    /// The states α (rad), q (rad/s), V (m/s), θ (rad).
     pub state: SVector<f64, 4>,
-    /// δe (rad), δt (0 to 1).
+    /// The inputs δe (rad) and δt (0 to 1).
     pub input: SVector<f64, 2>,
 }
 
-/// Specific force along the body's axes forwards and down, `ax` and `az`, near a steady flight: `steady` + C·x + D·u.
+/// Specific forces `ax` and `az` along the body's axes, forwards and down, near a steady flight: `steady` + C·x +
+/// D·u.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SpecificForce {
-    /// In the steady flight, m/s².
+    /// Specific force in the steady flight, m/s².
     pub steady: SVector<f64, 2>,
-    /// C.
+    /// C: derivatives with respect to the states.
     pub c: SMatrix<f64, 2, 4>,
-    /// D.
+    /// D: derivatives with respect to the inputs.
     pub d: SMatrix<f64, 2, 2>,
 }
 
@@ -59,7 +61,7 @@ impl Airframe {
     /// α̇ = q − (L + T·sin α)/(m·V) + g·cos γ/V, q̇ = M/Jy, V̇ = (T·cos α − D)/m − g·sin γ, θ̇ = q.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; [`Error::NotPositive`] for an airspeed that is not above zero.
+    /// [`Error::NotFinite`]; [`Error::NotPositive`] for an airspeed that is not positive.
     pub fn rates(
         &self,
         state: &SVector<f64, 4>,
@@ -83,13 +85,14 @@ impl Airframe {
             state: SVector::from([alpha, 0.0, airspeed, alpha + climb_angle]),
             input: SVector::from([elevator, throttle]),
         };
-        // Without thrust, the propeller turns with the wind; the parabola of thrust falls from there on.
+        // The propeller windmills at zero thrust, a throttle of V/`k_motor`; the start is above it, as the parabola
+        // of thrust falls below.
         let mut unknown = [0.0, 0.0, 1.2 * airspeed / self.propeller.motor];
         for _ in 0..MOST_STEPS {
             let [alpha, elevator, throttle] = unknown;
             let Trim { state, input } = point(alpha, elevator, throttle);
             let rates = self.differentiated(&state, &input)?;
-            // Where α goes, θ goes.
+            // θ changes along with α, at a constant climb angle.
             let slope = SMatrix::<f64, 3, 3>::from_fn(|row, column| {
                 let partial = &rates[row].gradient;
                 [partial[0] + partial[3], partial[4], partial[5]][column]
@@ -120,7 +123,7 @@ impl Airframe {
     /// The linear model of deviations from a flight, with exact derivatives.
     ///
     /// # Errors
-    /// As [`Airframe::rates`].
+    /// Those of [`Airframe::rates`].
     pub fn linearise(&self, trim: &Trim) -> Result<StateSpace, Error> {
         let rates = self.differentiated(&trim.state, &trim.input)?;
         let a = SMatrix::from_fn(|row, column| rates[row].gradient[column]);
@@ -128,12 +131,13 @@ impl Airframe {
         StateSpace { a, b }.finite()
     }
 
-    /// What an accelerometer at the centre of mass shows near a flight, with exact derivatives.
+    /// The specific force at the centre of mass near a flight, as an accelerometer measures it, with exact
+    /// derivatives.
     ///
     /// Along the body's axes: (T − D·cos α + L·sin α)/m forwards, (−L·cos α − D·sin α)/m down.
     ///
     /// # Errors
-    /// As [`Airframe::rates`].
+    /// Those of [`Airframe::rates`].
     pub fn specific_force(&self, trim: &Trim) -> Result<SpecificForce, Error> {
         let variables = self.variables(&trim.state, &trim.input)?;
         let [alpha, ..] = variables;
@@ -151,10 +155,11 @@ impl Airframe {
         })
     }
 
-    /// The same as stability derivatives: what the thesis' matrices are made of.
+    /// The linear model of deviations from a flight as stability derivatives, from which the thesis forms its
+    /// matrices.
     ///
     /// # Errors
-    /// As [`Airframe::rates`].
+    /// Those of [`Airframe::rates`].
     pub fn longitudinal(&self, trim: &Trim) -> Result<LongitudinalDerivatives, Error> {
         self.check()?;
         let [alpha, _, airspeed, theta] = trim.state.into();
@@ -166,7 +171,7 @@ impl Airframe {
             gravity: self.gravity,
             thrust_angle: alpha,
             climb_angle: theta - alpha,
-            // With α, lift and drag turn as well.
+            // Lift and drag rotate with α as well.
             x_alpha: (lift.value - drag.gradient[0]) * per_mass,
             x_airspeed: -drag.gradient[2] * per_mass,
             x_thrust_airspeed: thrust.gradient[2] * per_mass,
@@ -180,7 +185,7 @@ impl Airframe {
             m_pitch_rate: moment.gradient[1] * per_inertia,
             m_airspeed: moment.gradient[2] * per_inertia,
             m_elevator: moment.gradient[4] * per_inertia,
-            // Neither downwash that lags behind nor thrust beside the centre of mass.
+            // Neither downwash lag nor thrust beside the centre of mass is modelled.
             ..LongitudinalDerivatives::default()
         })
     }
@@ -204,7 +209,7 @@ impl Airframe {
         ])
     }
 
-    /// What forces depend on, if one can calculate with it.
+    /// The variables of the forces, after a check of the numbers.
     fn variables(
         &self,
         state: &SVector<f64, 4>,
@@ -256,7 +261,7 @@ impl Airframe {
 }
 
 impl crate::Lift {
-    /// Lift of the wing: attached flow up to the stall, and beyond it that of a flat plate.
+    /// Lift coefficient of the wing: attached flow up to the stall, that of a flat plate beyond.
     fn of_wing(&self, alpha: Dual, attached: Dual) -> Dual {
         let Some(stall) = self.stall else { return attached };
         let flat = alpha.sin().square() * alpha.cos() * if alpha.value < 0.0 { -2.0 } else { 2.0 };
@@ -267,7 +272,7 @@ impl crate::Lift {
     }
 }
 
-/// N, and N·m about the body's y axis.
+/// Forces, N, and the moment about the body's y axis, N·m.
 struct Forces {
     lift: Dual,
     drag: Dual,
@@ -275,7 +280,7 @@ struct Forces {
     thrust: Dual,
 }
 
-/// Those that have values.
+/// Passes numbers on if their values are finite.
 fn finite<const N: usize>(of: [Dual; N]) -> Result<[Dual; N], Error> {
     if of.iter().all(|it| it.value.is_finite()) { Ok(of) } else { Err(Error::NotFinite) }
 }

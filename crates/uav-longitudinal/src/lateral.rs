@@ -5,10 +5,10 @@ use crate::solve::solve;
 use crate::{Airframe, Error, Inertia, LateralDerivatives, Trim};
 
 impl Airframe {
-    /// The lateral stability derivatives of a flight: what the thesis' eqs 3.4.3 and 3.4.4 are made of.
+    /// The lateral stability derivatives of a flight, from which the thesis' eqs 3.4.3 and 3.4.4 are formed.
     ///
-    /// The coefficients are for rates about the body's axes; the answer is for those about the stability
-    /// axes, by the angle of attack below the body's.
+    /// The coefficients are for rates about the body axes; the result is for rates about the stability axes, which
+    /// lie below the body axes by the angle of attack.
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::NotPositive`], [`Error::Singular`] for an impossible inertia.
@@ -39,7 +39,7 @@ impl Airframe {
         let Inertia { x, z, xz, .. } = self.inertia;
         let mass = SMatrix::from([[self.mass, 0.0, 0.0], [0.0, x, -xz], [0.0, -xz, z]]);
         let accelerations = solve(mass, of_body)?;
-        // What was about the body's x and z is turned down by α: moments from the left, rates from the right.
+        // Quantities about the body's x and z axes are rotated by α: moments from the left, rates from the right.
         let (sin_alpha, cos_alpha) = (sin(alpha), cos(alpha));
         let turned =
             |x: f64, z: f64| [cos_alpha * x + sin_alpha * z, cos_alpha * z - sin_alpha * x];

@@ -1,4 +1,4 @@
-//! Plants to estimate, and what of them is measured. States α, q, V, θ; inputs δe, δt.
+//! Example plants to estimate, and their output matrices. States α, q, V, θ; inputs δe, δt.
 
 use nalgebra::SMatrix;
 
@@ -7,14 +7,15 @@ use crate::{Airframe, Error, StateSpace, SteadyFlight};
 /// P1: the Aerosonde of 13.5 kg, climbing at 40 m/s and 4°, from its published coefficients.
 ///
 /// # Errors
-/// None, as the tests have it: those of [`Airframe::trim`].
+/// Those of [`Airframe::trim`]; as the tests show, none occurs.
 pub fn aerosonde() -> Result<StateSpace, Error> {
     let airframe = Airframe::aerosonde();
     let flight = SteadyFlight { airspeed: 40.0, climb_angle: 4.0_f64.to_radians() };
     airframe.linearise(&airframe.trim(&flight)?)
 }
 
-/// P2: no aircraft, but fitted to what the thesis says of its own, whose numbers it does not print.
+/// P2: not a real aircraft, but fitted to the properties that the thesis reports of its own, whose numbers it does
+/// not print.
 pub fn thesis_like() -> StateSpace {
     model(
         [
@@ -27,8 +28,7 @@ pub fn thesis_like() -> StateSpace {
     )
 }
 
-/// P3: the Navion of Nelson, *Flight Stability and Automatic Control*, in SI units; the throttle's column is
-/// assumed.
+/// P3: the Navion of Nelson, *Flight Stability and Automatic Control*, in SI units; the throttle column is assumed.
 pub fn navion() -> StateSpace {
     model(
         [
@@ -41,7 +41,7 @@ pub fn navion() -> StateSpace {
     )
 }
 
-/// From rows, as they are published.
+/// Creates a model from rows, as they are published.
 fn model(a: [[f64; 4]; 4], b: [[f64; 2]; 4]) -> StateSpace {
     StateSpace {
         a: SMatrix::<f64, 4, 4>::from(a).transpose(),
@@ -49,17 +49,17 @@ fn model(a: [[f64; 4]; 4], b: [[f64; 2]; 4]) -> StateSpace {
     }
 }
 
-/// C of a plant all of whose states are measured: the thesis'.
+/// Output matrix C for measurements of all states, as in the thesis.
 pub fn full_state() -> SMatrix<f64, 4, 4> {
     SMatrix::identity()
 }
 
-/// C of gyroscope, pitot tube and attitude reference: q, V, θ.
+/// Output matrix C for gyroscope, pitot tube and attitude reference: q, V, θ.
 pub fn rate_airspeed_and_pitch() -> SMatrix<f64, 3, 4> {
     full_state().fixed_rows::<3>(1).into_owned()
 }
 
-/// C of pitot tube and attitude reference alone: V, θ.
+/// Output matrix C for pitot tube and attitude reference alone: V, θ.
 pub fn airspeed_and_pitch() -> SMatrix<f64, 2, 4> {
     full_state().fixed_rows::<2>(2).into_owned()
 }

@@ -1,4 +1,4 @@
-//! An airframe by the names that its numbers have in the parameter files of Beard et al.'s book.
+//! The serialised form of an airframe, with the names of the parameter files of Beard et al.'s book.
 
 use serde::{Deserialize, Serialize};
 
@@ -31,13 +31,13 @@ pub(crate) struct Published {
     C_L_q: f64,
     #[serde(default)]
     C_L_delta_e: f64,
-    /// Stall, with the next.
+    /// Stall, together with `M`.
     alpha0: Option<f64>,
     M: Option<f64>,
-    /// Drag of the first form, with the next.
+    /// Drag of the first form, together with `e`.
     C_D_p: Option<f64>,
     e: Option<f64>,
-    /// Drag of the second form, with the next three.
+    /// Drag of the second form, together with the next three.
     C_D_0: Option<f64>,
     #[serde(alias = "C_D_alpha")]
     C_D_alpha1: Option<f64>,

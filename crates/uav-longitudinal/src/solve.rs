@@ -3,9 +3,9 @@ use nalgebra::SMatrix;
 
 use crate::Error;
 
-/// X of A·X = B, by elimination with the largest pivot of each column.
+/// Solves A·X = B by Gauss-Jordan elimination with partial pivoting.
 ///
-/// A column without a pivot has none larger than its own rounding errors: [`Error::Singular`].
+/// Returns [`Error::Singular`] if a column's largest pivot does not exceed its own rounding errors.
 pub(crate) fn solve<const N: usize, const M: usize>(
     mut a: SMatrix<f64, N, N>,
     mut b: SMatrix<f64, N, M>,
@@ -48,7 +48,7 @@ pub(crate) fn solve<const N: usize, const M: usize>(
     Ok(b)
 }
 
-/// Swaps two rows of a matrix that is stored by columns, if both exist.
+/// Swaps two rows of a matrix stored by columns, if both exist.
 fn swap_rows<const N: usize, const M: usize>(columns: &mut [[f64; N]; M], i: usize, j: usize) {
     for column in columns {
         if i < N && j < N {

@@ -4,35 +4,35 @@ use nalgebra::SMatrix;
 use crate::Error;
 use crate::solve::solve;
 
-/// ẋ = A·x + B·u: four states, two inputs, continuous time, deviations from a steady flight.
+/// A linear model ẋ = A·x + B·u of deviations from a steady flight: four states, two inputs, continuous time.
 ///
-/// In `f64`: a model is trimmed, linearised and discretised where an estimator is designed. What then runs
-/// on a target is discrete, and in any scalar.
+/// It is in `f64`: a model is trimmed, linearised and discretised where an estimator is designed. What runs on the
+/// target is discrete, and in any scalar type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StateSpace {
-    /// A.
+    /// System matrix A.
     pub a: SMatrix<f64, 4, 4>,
-    /// B.
+    /// Input matrix B.
     pub b: SMatrix<f64, 4, 2>,
 }
 
-/// E·ẋ = A·x + B·u: as derivatives with respect to accelerations leave it.
+/// A linear model in descriptor form, E·ẋ = A·x + B·u, which results from derivatives with respect to accelerations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Descriptor {
-    /// E.
+    /// Matrix E of the state's derivative.
     pub e: SMatrix<f64, 4, 4>,
-    /// A.
+    /// System matrix A.
     pub a: SMatrix<f64, 4, 4>,
-    /// B.
+    /// Input matrix B.
     pub b: SMatrix<f64, 4, 2>,
 }
 
 impl Descriptor {
-    /// E⁻¹·A and E⁻¹·B.
+    /// The state-space form with E⁻¹·A and E⁻¹·B.
     ///
     /// # Errors
     /// [`Error::Singular`] if E has no inverse; [`Error::NotFinite`].
@@ -43,8 +43,9 @@ impl Descriptor {
 }
 
 impl StateSpace {
-    /// Spectral densities of white noise on ẋ that stands for a model of which every part is `wrong` by such a share, in
-    /// `deviations` of states and inputs of this size that last for `lasting` seconds. None on θ̇, which is kinematics.
+    /// Spectral densities of white noise on ẋ that represents a model with a relative error `wrong` in every
+    /// coefficient, for `deviations` of states and inputs of this size that last for `lasting` (s). Zero on θ̇, which
+    /// is kinematics.
     pub fn process_noise(&self, wrong: f64, deviations: &[f64; 6], lasting: f64) -> [f64; 4] {
         let (a, b) = (self.a.as_columns(), self.b.as_columns());
         core::array::from_fn(|state| {

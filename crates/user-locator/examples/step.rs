@@ -1,5 +1,5 @@
-//! What a step of the thesis' filter costs, and the bits that come out, which are the same on all vectors:
-//! `cargo run --release -p kestirim-user-locator --example step`, and with `--features vectors`.
+//! Measures the cost of a step of the thesis' filter, and prints the resulting bits, which are the same with all
+//! vector widths: `cargo run --release -p kestirim-user-locator --example step`, and with `--features vectors`.
 
 use core::hint::black_box;
 use std::time::Instant;
@@ -14,7 +14,7 @@ const PARTICLES: usize = 500;
 const ROUNDS: usize = 400;
 const LAPS: usize = 4;
 
-/// A circle of twelve places round a user.
+/// A circle of twelve places around a user.
 fn circle<T: Scalar>() -> Vec<Measurement<T>> {
     let stop = |index: i32| {
         let angle = f64::from(index) * core::f64::consts::TAU / 12.0;
@@ -27,7 +27,7 @@ fn circle<T: Scalar>() -> Vec<Measurement<T>> {
     (0..12).map(stop).collect()
 }
 
-/// Microseconds of a step, of the fastest round, and a sum of the bits of all means.
+/// Microseconds per step, of the fastest round, and a checksum of the bits of all means.
 fn run<T: Scalar>(threshold: f64) -> (f64, u64) {
     let mut rng = Xoshiro128PlusPlus::seed_from_u64(1);
     let region = Region::new([T::ZERO; 2], [T::from_f64(3000.0); 2]).expect("a square");

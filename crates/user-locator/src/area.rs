@@ -5,11 +5,11 @@ use kestirim_scalar::Scalar;
 
 use crate::Error;
 
-/// A polygon of up to N corners (m, in the plane of the measurements): where a user can be.
+/// A polygon of up to N corners (m, in the plane of the measurements): the area in which a user can be.
 ///
-/// The prior it stands for is uniform inside and zero outside: [`Area::region`] is the box that a lattice or a cloud
-/// fills, [`Area::contains`] says which of its points count. 8·N bytes in single precision. Edges must be shorter
-/// than the largest number of the format (32 km in Q16.16).
+/// It represents a prior that is uniform inside and zero outside: [`Area::region`] is the bounding box for a lattice
+/// or a cloud, and [`Area::contains`] tells which of its points count. 8·N bytes in single precision. Edges must be
+/// shorter than the largest number of the format (32 km in Q16.16).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -25,10 +25,11 @@ pub struct Area<T, const N: usize> {
 }
 
 impl<T: Scalar, const N: usize> Area<T, N> {
-    /// The polygon of these corners, in either sense of rotation.
+    /// Creates the polygon with these corners, in either sense of rotation.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; [`Error::TooManyCorners`] beyond N; [`Error::NoArea`] if the corners enclose nothing.
+    /// [`Error::NotFinite`]; [`Error::TooManyCorners`] for more than N corners; [`Error::NoArea`] if they enclose
+    /// nothing.
     pub fn new(corners: &[[T; 2]]) -> Result<Self, Error> {
         if !corners.iter().all(|corner| T::all_finite(corner)) {
             return Err(Error::NotFinite);
@@ -46,7 +47,7 @@ impl<T: Scalar, const N: usize> Area<T, N> {
         if area.share() > T::EPSILON { Ok(area) } else { Err(Error::NoArea) }
     }
 
-    /// All of a region: a rectangle, for which N must be at least four.
+    /// A rectangle that covers a whole region; N must be at least four.
     ///
     /// # Errors
     /// [`Error::NoArea`] if a side is zero.
@@ -56,22 +57,22 @@ impl<T: Scalar, const N: usize> Area<T, N> {
         Self::new(&[[left, bottom], [right, bottom], [right, top], [left, top]])
     }
 
-    /// The corners in their order, m.
+    /// The corners in order, m.
     #[inline]
     pub fn corners(&self) -> &[[T; 2]] {
         &self.corners
     }
 
-    /// The smallest box around it.
+    /// The bounding box.
     #[inline]
     pub fn region(&self) -> &Region<T, 2> {
         &self.region
     }
 
-    /// The same area with coordinates that are counted from `origin`.
+    /// The same area in coordinates relative to `origin`.
     ///
     /// # Errors
-    /// Those of [`Area::new`], where the numbers cannot tell the corners apart any more.
+    /// Those of [`Area::new`], if the number format can no longer distinguish the corners.
     pub fn relative_to(&self, origin: [T; 2]) -> Result<Self, Error> {
         let mut corners = self.corners.clone();
         for [x, y] in &mut corners {
@@ -81,14 +82,14 @@ impl<T: Scalar, const N: usize> Area<T, N> {
         Self::new(&corners)
     }
 
-    /// m²; on the upper rail of fixed point where that does not hold it.
+    /// The area, m²; saturates in fixed point.
     pub fn size(&self) -> T {
         let [width, height] = self.region.width();
         self.share() * width * height
     }
 
-    /// The part of its box that it covers, by the shoelace formula in units of the box's sides, of which all products
-    /// are numbers.
+    /// The fraction of its bounding box that it covers, by the shoelace formula in units of the box's sides, in which
+    /// no product overflows.
     fn share(&self) -> T {
         let ([left, bottom], [width, height]) = (*self.region.low(), self.region.width());
         let [across, up] = [width, height].map(|side| side.max(T::EPSILON).divisor());
@@ -101,13 +102,13 @@ impl<T: Scalar, const N: usize> Area<T, N> {
         sum.abs() * T::HALF
     }
 
-    /// From each corner to the next, the last one to the first.
+    /// The edges: from each corner to the next, and from the last to the first.
     fn edges(&self) -> impl Iterator<Item = ([T; 2], [T; 2])> {
         let next = self.corners.iter().skip(1).chain(self.corners.first());
         self.corners.iter().copied().zip(next.copied())
     }
 
-    /// Whether a place (m) is inside: a line from it to the east crosses the border an odd number of times.
+    /// Whether a point (m) is inside: a ray from it to the east crosses the border an odd number of times.
     #[inline]
     pub fn contains(&self, [x, y]: [T; 2]) -> bool {
         let mut inside = false;
@@ -120,7 +121,7 @@ impl<T: Scalar, const N: usize> Area<T, N> {
     }
 }
 
-/// A channel to users within an area only: the likelihood of any place outside is zero.
+/// A channel restricted to users within an area: the likelihood of any point outside is zero.
 ///
 /// ```
 /// use kestirim_air_to_ground::{Channel, Environment};
@@ -139,7 +140,7 @@ pub struct Within<'a, T, C, const N: usize> {
 }
 
 impl<'a, T, C, const N: usize> Within<'a, T, C, N> {
-    /// A channel and where its users can be.
+    /// Restricts a channel to users inside `area`.
     #[inline]
     pub fn new(channel: C, area: &'a Area<T, N>) -> Self {
         Self { channel, area }

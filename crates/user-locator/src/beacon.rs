@@ -6,14 +6,14 @@ use kestirim_scalar::Scalar;
 use crate::level_step::health;
 use crate::{Error, Health};
 
-/// The power of the likelihood that gives credible regions their nominal coverage: (1 − ρ)/(1 + ρ) for hovers whose shadowing
-/// correlates by 0.82, as it does 20 m apart if it decays over 100 m.
+/// The power to which the likelihood is raised so that credible regions have their nominal coverage: (1 − ρ)/(1 + ρ)
+/// for hovers whose shadowing has the correlation ρ = 0.82, as 20 m apart with a correlation length of 100 m.
 const COMPOSITE_POWER: f64 = 0.1;
 
-/// Finds a transmitter of unknown power over open ground, from the levels received at hovers of a real flight.
+/// Locates a transmitter of unknown power over open ground, from the levels received at hovers of a real flight.
 ///
-/// Up to M measurements are stored; the posterior is computed from all of them on a lattice of L points when
-/// it is asked for. 16·M bytes in single precision.
+/// Up to M measurements are stored; the posterior is computed from all of them, on a lattice of L points, on request.
+/// 16·M bytes in single precision.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -28,7 +28,7 @@ pub struct Beacon<T, const M: usize> {
     measurements: Vec<Measurement<T>, M>,
 }
 
-/// Estimate of a [`Beacon`].
+/// The estimate of a [`Beacon`].
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -39,24 +39,24 @@ pub struct Beacon<T, const M: usize> {
     ))
 )]
 pub struct BeaconEstimate<T, const L: usize> {
-    /// The place, m: the mean of the posterior that takes measurements for independent. That is the sharper
-    /// one, whose mean is not drawn to parts without measurements; its width has no meaning.
+    /// The estimated place, m: the mean of the posterior that treats measurements as independent. This is the sharper
+    /// posterior, whose mean is not drawn to areas without measurements; its width has no meaning.
     pub place: [T; 2],
     /// The level received at one metre, dB.
     pub level: T,
-    /// The posterior that allows for their correlation: the uncertainty of the place.
+    /// The posterior that allows for correlated measurements, which represents the uncertainty of the place.
     pub posterior: PointMass<T, 2, L>,
-    /// The channel of the posterior.
+    /// The channel with which the posterior was computed.
     channel: FreeSpace<T>,
 }
 
 impl<T: Scalar, const L: usize> BeaconEstimate<T, L> {
-    /// Mean and spread of the posterior that allows for correlation.
+    /// Mean and spread of the posterior that allows for correlated measurements.
     pub fn moments(&self) -> Moments<T, 2> {
         self.posterior.moments()
     }
 
-    /// From all measurements, in a region where `inside` says.
+    /// The estimate from all measurements, restricted to places in `region` that are `inside`.
     pub(crate) fn of(
         mut channel: FreeSpace<T>,
         measurements: &[Measurement<T>],
@@ -65,7 +65,7 @@ impl<T: Scalar, const L: usize> BeaconEstimate<T, L> {
     ) -> Result<Self, Error> {
         let mut posterior = sharp::<T, L>(&channel, measurements, region, &inside)?;
         if let Some(likeliest) = posterior.point(posterior.heaviest()) {
-            // Once more with the noise that the likeliest place leaves.
+            // Again with the noise scale that the residuals at the likeliest place suggest.
             channel = channel.fitted(measurements, likeliest);
             posterior = sharp(&channel, measurements, region, &inside)?;
         }
@@ -80,7 +80,8 @@ impl<T: Scalar, const L: usize> BeaconEstimate<T, L> {
         Ok(Self { place, level, posterior, channel })
     }
 
-    /// Whether a place belongs to the smallest region of this probability, given the measurements of the estimate.
+    /// Whether a place belongs to the smallest credible region of this probability, given the measurements of the
+    /// estimate.
     pub(crate) fn is_credible(
         &self,
         measurements: &[Measurement<T>],
@@ -97,13 +98,13 @@ impl<T: Scalar, const L: usize> BeaconEstimate<T, L> {
 }
 
 impl<T: Scalar, const M: usize> Beacon<T, M> {
-    /// A beacon of which nothing has been measured.
+    /// Creates a beacon without measurements.
     pub fn new(channel: FreeSpace<T>) -> Self {
         const { assert!(M <= 128, "the channel reads no more") };
         Self { channel, measurements: Vec::new() }
     }
 
-    /// Takes in a measurement, of which the loss is the negative received level.
+    /// Adds a measurement, whose loss is the negative received level.
     ///
     /// # Errors
     /// [`Error::Filter`] with `TooMany` after M measurements; then nothing has changed.
@@ -111,10 +112,10 @@ impl<T: Scalar, const M: usize> Beacon<T, M> {
         self.measurements.push(*measurement).map_err(|_| FilterError::TooMany.into())
     }
 
-    /// Posterior of the transmitter in a region, restricted to places that are `inside`.
+    /// The posterior of the transmitter's place in a region, restricted to places that are `inside`.
     ///
     /// # Errors
-    /// [`Error::Filter`] with `Degenerate` if it can be nowhere.
+    /// [`Error::Filter`] with `Degenerate` if no place explains the measurements.
     pub fn estimate<const L: usize>(
         &self,
         region: &Region<T, 2>,
@@ -123,7 +124,7 @@ impl<T: Scalar, const M: usize> Beacon<T, M> {
         BeaconEstimate::of(self.channel, &self.measurements, region, inside)
     }
 
-    /// Whether a place belongs to the smallest region that holds the transmitter with this probability.
+    /// Whether a place belongs to the smallest region that contains the transmitter with this probability.
     pub fn credible<const L: usize>(
         &self,
         estimate: &BeaconEstimate<T, L>,
@@ -133,14 +134,14 @@ impl<T: Scalar, const M: usize> Beacon<T, M> {
         estimate.is_credible(&self.measurements, place, probability)
     }
 
-    /// Whether an estimate from these measurements can be relied upon: `innovations` where their levels step
-    /// ([`LevelStep`](crate::LevelStep)), seen from its place.
+    /// Whether an estimate from these measurements is reliable: reports `innovations` if their levels show a step
+    /// ([`LevelStep`](crate::LevelStep)) as seen from the estimated place.
     pub fn health<const L: usize>(&self, estimate: &BeaconEstimate<T, L>) -> Health {
         health(&self.measurements, estimate.place)
     }
 }
 
-/// The posterior that takes measurements for independent.
+/// The posterior that treats measurements as independent, on a lattice that is refined until it resolves it.
 fn sharp<T: Scalar, const L: usize>(
     channel: &FreeSpace<T>,
     measurements: &[Measurement<T>],

@@ -2,14 +2,16 @@ use heapless::Vec;
 use kestirim_air_to_ground::{Heading, Measurement};
 use kestirim_scalar::Scalar;
 
-/// Measurements this near to each other, m, say the same of a transmitter tens of metres away.
+/// Initial distance within which measurements are merged, m: so close, they see much the same of a transmitter tens
+/// of metres away.
 const NEAR_M: f64 = 8.0;
 
-/// A flight's measurements, thinned by place: those that were made close together are one, their mean. None is dropped.
+/// The measurements of a flight, thinned by place: those taken close together are merged into their mean. None is
+/// dropped.
 ///
-/// A drone that hovers, or comes by again, measures the same shadows and the same direction of its antenna once more: that
-/// is no further witness. Places count as one within 8 m; when M are taken, within twice as much, and so on. 36·M bytes
-/// in single precision.
+/// A drone that hovers or returns measures the same shadowing and the same direction of its antenna again, which is
+/// no independent evidence. Places within 8 m are merged; when M places are occupied, this distance is doubled, and
+/// so on. 36·M bytes in single precision.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -21,11 +23,11 @@ const NEAR_M: f64 = 8.0;
 )]
 pub struct ByPlace<T, const M: usize> {
     means: Vec<Measurement<T>, M>,
-    /// The mean heading of each.
+    /// The mean heading at each place.
     headings: Vec<Heading<T>, M>,
-    /// How many are in each.
+    /// The number of measurements merged at each place.
     counts: Vec<u32, M>,
-    /// Places count as one within this, m.
+    /// The distance within which places are merged, m.
     near: T,
 }
 
@@ -41,9 +43,9 @@ impl<T: Scalar, const M: usize> ByPlace<T, M> {
         }
     }
 
-    /// Adds a measurement with the drone's heading. O(M); O(M²) when places are joined.
+    /// Adds a measurement with the drone's heading. O(M); O(M²) when places are merged.
     pub fn push(&mut self, measurement: &Measurement<T>, heading: &Heading<T>) {
-        // As often as the whole range of numbers can be doubled.
+        // 32 doublings span the whole range of numbers.
         for _ in 0..32 {
             if self.add(measurement, heading, 1) {
                 return;
@@ -53,25 +55,25 @@ impl<T: Scalar, const M: usize> ByPlace<T, M> {
         }
     }
 
-    /// The means in the order in which their places were first seen.
+    /// The mean measurements, in the order in which their places were first visited.
     #[inline]
     pub fn as_slice(&self) -> &[Measurement<T>] {
         &self.means
     }
 
-    /// The mean heading at each of these places.
+    /// The mean heading at each place of [`ByPlace::as_slice`].
     #[inline]
     pub fn headings(&self) -> &[Heading<T>] {
         &self.headings
     }
 
-    /// Within what distance places count as one, m.
+    /// The distance within which places are merged, m.
     #[inline]
     pub fn near(&self) -> T {
         self.near
     }
 
-    /// Adds the mean of `count` measurements where it is near, or as another place; false if there is no room.
+    /// Merges the mean of `count` measurements into a near place or adds a new one; `false` if there is no room.
     fn add(&mut self, measurement: &Measurement<T>, heading: &Heading<T>, count: u32) -> bool {
         let mut nearest: Option<(usize, T)> = None;
         for (index, mean) in self.means.iter().enumerate() {
@@ -99,12 +101,12 @@ impl<T: Scalar, const M: usize> ByPlace<T, M> {
         true
     }
 
-    /// Joins places that are near by now.
+    /// Merges places that have become near.
     fn join(&mut self) {
         let (means, counts) = (core::mem::take(&mut self.means), core::mem::take(&mut self.counts));
         let headings = core::mem::take(&mut self.headings);
         for ((mean, heading), count) in means.iter().zip(&headings).zip(&counts) {
-            // There was room for as many.
+            // There was room for all of them before.
             self.add(mean, heading, *count);
         }
     }
@@ -116,13 +118,13 @@ impl<T: Scalar, const M: usize> Default for ByPlace<T, M> {
     }
 }
 
-/// The mean of two measurements, of which the second has this share.
+/// The weighted mean of two measurements; `share` is the weight of the second.
 fn between<T: Scalar>(first: &Measurement<T>, second: &Measurement<T>, share: T) -> Measurement<T> {
     let mean = |first: T, second: T| first + share * (second - first);
     let ([x, y], [east, north]) = (first.place(), second.place());
     let height = mean(first.height(), second.height());
     let loss = mean(first.loss(), second.loss());
-    // Between two that are plausible there is only what is plausible.
+    // A mean of two plausible measurements is plausible.
     Measurement::new([mean(x, east), mean(y, north)], height, loss).unwrap_or(*first)
 }
 
@@ -146,13 +148,13 @@ mod tests {
         assert!((hover.loss().to_f64() - 60.5).abs() < 0.02, "{hover:?}");
         flight.push(&measurement([10.0, 4.0], 60.5), &unknown);
         assert_eq!(flight.as_slice().len(), 1);
-        // A hundredth part of the way.
+        // A hundredth of the distance.
         assert!((flight.as_slice()[0].place()[0].to_f64() - 3.07).abs() < 0.02);
         for k in 1..200 {
             flight.push(&measurement([3.0 + 20.0 * f64::from(k), 4.0], 60.0), &unknown);
             assert!(flight.as_slice().len() <= 4);
         }
-        // As many places as there is room for cover the whole flight, however long.
+        // However long the flight, the places kept cover all of it.
         assert!(flight.near() > T::from_f64(512.0) && flight.as_slice().len() >= 2, "{flight:?}");
         let mean = flight.counts.iter().sum::<u32>();
         assert_eq!(mean, 300, "none is dropped");

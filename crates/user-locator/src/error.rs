@@ -1,18 +1,18 @@
 use core::fmt;
 
-/// Reason for which a measurement or an area was refused. The locator is as it was before the call.
+/// The reason why a measurement or an area was refused. The locator is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Error {
-    /// The channel refused it: not finite, no loss that a radio measures, no height.
+    /// The channel refused the measurement: not finite, an implausible loss, or a height that is not positive.
     Channel(kestirim_air_to_ground::Error),
-    /// The filter refused it: nowhere in the region does anything explain it.
+    /// The filter refused the measurement: nothing in the region explains it.
     Filter(kestirim_particle_filter::Error),
     /// A corner of an area is not finite.
     NotFinite,
-    /// An area has more corners than there is room for.
+    /// An area has more corners than its capacity.
     TooManyCorners,
     /// The corners of an area enclose nothing.
     NoArea,

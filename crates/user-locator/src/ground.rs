@@ -11,24 +11,25 @@ use crate::informative::{Informative, most_informative, standing};
 use crate::level_step::health;
 use crate::{Area, ByPlace, Error, Health};
 
-/// The power of the likelihood that gives regions their coverage: shadowing is alike along some tens of metres, and a flight's
-/// measurements are some ten to twenty metres apart.
+/// The power to which the likelihood is raised so that regions have their nominal coverage: shadowing is correlated
+/// over some tens of metres, and a flight's measurements are some ten to twenty metres apart.
 const REGION_POWER: f64 = 0.8;
-/// A supposition that is nowhere likelier than e⁻⁸ of the likeliest adds nothing.
+/// Suppositions whose largest log-likelihood is this far below the best one's are dropped.
 const UNLIKELY: f64 = 8.0;
-/// One in so many points of the lattice tells which suppositions these are.
+/// The fraction of the lattice's points (one in this many) with which likely suppositions are selected.
 const SCOUTS: usize = 4;
-/// What weighs less than e⁻¹² of the heaviest point is outside of a finer lattice.
+/// Points whose log-weight is this far below the heaviest one's lie outside of a finer lattice.
 const DEPTH: f64 = 12.0;
-/// A lattice whose weight is on fewer of its points than this part is laid anew.
+/// A lattice is refined when its effective number of points is at most this fraction of them.
 const FEWEST: f64 = 0.1;
 
-/// Searches an area of up to N corners, over open ground, for a transmitter of which nothing is known, from any number of
-/// received levels, thinned by place to M: level, path-loss exponent, antennas, noise and the receiver's floor are
-/// estimated or integrated over ([`OpenGround`]).
+/// Searches an area of up to N corners, over open ground, for a transmitter of which nothing is known.
 ///
-/// Dearer than [`BeaconSearch`](crate::BeaconSearch), which believes free space: on a computer an estimate takes some
-/// tenths of a second. 36·M + 8·N bytes in single precision.
+/// It takes any number of received levels, thinned by place to M: level, path-loss exponent, antennas, noise and the
+/// receiver's floor are estimated or integrated over ([`OpenGround`]).
+///
+/// More expensive than [`BeaconSearch`](crate::BeaconSearch), which assumes free space: on a computer an estimate
+/// takes some tenths of a second. 36·M + 8·N bytes in single precision.
 ///
 /// ```
 /// use kestirim_air_to_ground::{Measurement, OpenGround};
@@ -58,7 +59,7 @@ pub struct GroundSearch<T, const M: usize, const N: usize> {
     measurements: ByPlace<T, M>,
 }
 
-/// Estimate of a [`GroundSearch`].
+/// The estimate of a [`GroundSearch`].
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -69,21 +70,21 @@ pub struct GroundSearch<T, const M: usize, const N: usize> {
     ))
 )]
 pub struct GroundEstimate<T, const L: usize> {
-    /// The place, m: the mean of the posterior that takes measurements for independent.
+    /// The estimated place, m: the mean of the posterior that treats measurements as independent.
     pub place: [T; 2],
-    /// Root mean square distance of the transmitter from it, by the other posterior, m.
+    /// Root mean square distance of the transmitter from `place`, by the posterior that allows for correlation, m.
     pub sigma: T,
-    /// The likeliest of what is supposed of antennas, receiver and noise, at the likeliest place.
+    /// The likeliest supposition on antennas, receiver and noise, at the likeliest place.
     pub supposition: Supposition<T>,
-    /// Level and exponent there.
+    /// The fitted level and exponent at the likeliest place.
     pub fit: GroundFit<T>,
-    /// The posterior that allows for correlated shadowing: regions, and the uncertainty of the place.
+    /// The posterior that allows for correlated shadowing, for regions and for the uncertainty of the place.
     pub posterior: PointMass<T, 2, L>,
-    /// All that is likely enough.
+    /// All suppositions that are likely enough.
     likely: Vec<Supposition<T>, SUPPOSITIONS>,
 }
 
-/// What a posterior is computed from.
+/// The data from which a posterior is computed.
 struct Evidence<'a, T, const N: usize> {
     channel: OpenGround<T>,
     area: &'a Area<T, N>,
@@ -93,33 +94,33 @@ struct Evidence<'a, T, const N: usize> {
 }
 
 impl<T: Scalar, const M: usize, const N: usize> GroundSearch<T, M, N> {
-    /// A search in an area before its first measurement.
+    /// Creates a search in an area, before its first measurement.
     #[inline]
     pub fn new(channel: OpenGround<T>, area: Area<T, N>) -> Self {
         const { assert!(M <= 128, "the channel reads no more") };
         Self { channel, area, measurements: ByPlace::new() }
     }
 
-    /// Takes in a measurement, of which the loss is the negative received level.
+    /// Adds a measurement, whose loss is the negative received level.
     #[inline]
     pub fn measure(&mut self, measurement: &Measurement<T>) {
         self.measure_with_heading(measurement, &Heading::unknown());
     }
 
-    /// Takes in a measurement with the drone's heading: what an antenna that turns with the drone does to levels is then
-    /// estimated, too, and is no error of the place.
+    /// Adds a measurement with the drone's heading: the effect on levels of an antenna that turns with the drone is
+    /// then estimated, too, instead of causing an error of the place.
     #[inline]
     pub fn measure_with_heading(&mut self, measurement: &Measurement<T>, heading: &Heading<T>) {
         self.measurements.push(measurement, heading);
     }
 
-    /// The measurements by place.
+    /// The measurements, merged by place.
     #[inline]
     pub fn measurements(&self) -> &[Measurement<T>] {
         self.measurements.as_slice()
     }
 
-    /// Area in which the transmitter is searched.
+    /// The area in which the transmitter is searched.
     #[inline]
     pub fn area(&self) -> &Area<T, N> {
         &self.area
@@ -135,7 +136,7 @@ impl<T: Scalar, const M: usize, const N: usize> GroundSearch<T, M, N> {
         }
     }
 
-    /// Posterior of the transmitter in the area, on a lattice of L points over its bounding box.
+    /// The posterior of the transmitter's place in the area, on a lattice of L points over its bounding box.
     ///
     /// # Errors
     /// [`Error::Filter`] with `Degenerate` if no point of the lattice lies inside and explains the measurements.
@@ -149,13 +150,13 @@ impl<T: Scalar, const M: usize, const N: usize> GroundSearch<T, M, N> {
         let posterior = self.evidence(T::from_f64(REGION_POWER)).posterior::<L>(&likely)?;
         let moments = posterior.moments();
         let [x, y] = moments.mean();
-        // About the place that is told, which is not quite its mean.
+        // The deviation from the reported place, which is not quite this posterior's mean.
         let sigma = T::norm(&[moments.spread(), x - place[0], y - place[1]]);
         Ok(GroundEstimate { place, sigma, supposition, fit, posterior, likely })
     }
 
-    /// Whether a place belongs to the smallest region that holds the transmitter with this probability (0 to 1). The
-    /// estimate must be that of the same measurements.
+    /// Whether a place belongs to the smallest region that contains the transmitter with this probability (0 to 1).
+    /// The estimate must be from the same measurements.
     pub fn credible<const L: usize>(
         &self,
         estimate: &GroundEstimate<T, L>,
@@ -170,12 +171,13 @@ impl<T: Scalar, const M: usize, const N: usize> GroundSearch<T, M, N> {
             && density(place) - density(heaviest) >= posterior.density_level(probability)
     }
 
-    /// Where in the area to measure next, so high (m) above the transmitter; none if nothing is left to be learned. The
-    /// estimate must be that of the same measurements.
+    /// The place in the area at which to measure next, at `height` (m) above the transmitter; `None` if nothing
+    /// remains to be learned. The estimate must be from the same measurements.
     ///
-    /// Of 64 waypoints all over the area that one after which the transmitter's place is expected to be known best: the mean
-    /// over all levels that may be measured there, from 32 places that stand for the posterior (Lindley, *On a measure of the information
-    /// provided by an experiment*, 1956, with the spread in the place of the entropy). Costs some hundred thousand exponentials.
+    /// Of 64 waypoints all over the area, it is the one after which the smallest uncertainty of the transmitter's
+    /// place is expected: the mean over all levels that may be measured there, from 32 places that represent the
+    /// posterior (Lindley, *On a measure of the information provided by an experiment*, 1956, with the spread in
+    /// place of the entropy). Costs some hundred thousand exponentials.
     pub fn next_waypoint<const L: usize>(
         &self,
         estimate: &GroundEstimate<T, L>,
@@ -186,8 +188,8 @@ impl<T: Scalar, const M: usize, const N: usize> GroundSearch<T, M, N> {
         most_informative(&standing(&estimate.posterior, explained), &self.area, height)
     }
 
-    /// Whether an estimate from these measurements can be relied upon: `innovations` where their levels step
-    /// ([`LevelStep`](crate::LevelStep)), seen from its place.
+    /// Whether an estimate from these measurements is reliable: reports `innovations` if their levels show a step
+    /// ([`LevelStep`](crate::LevelStep)) as seen from the estimated place.
     pub fn health<const L: usize>(&self, estimate: &GroundEstimate<T, L>) -> Health {
         health(self.measurements(), estimate.place)
     }
@@ -208,7 +210,7 @@ impl<T: Scalar, const N: usize> Evidence<'_, T, N> {
         }
     }
 
-    /// The suppositions that are likely enough anywhere, seen from a coarse lattice.
+    /// The suppositions that are likely enough at any place, judged on a coarse lattice.
     fn likely<const L: usize>(&self) -> Result<Vec<Supposition<T>, SUPPOSITIONS>, FilterError> {
         let mut all = Vec::<_, SUPPOSITIONS>::new();
         for supposition in self.channel.suppositions(self.measurements, self.headings) {
@@ -218,7 +220,7 @@ impl<T: Scalar, const N: usize> Evidence<'_, T, N> {
         let best = Cell::new([T::ZERO.ln(); SUPPOSITIONS]);
         let count = (L / SCOUTS).max(1);
         let mut scouts = PointMass::<T, 2, L>::with_count(count, self.area.region())?;
-        // Nothing is known if none of so few lies inside.
+        // Nothing is learned if none of these few points lies inside.
         let _ = scouts.update(|place| {
             self.log_likelihood(&all, place, |index, log| {
                 let mut logs = best.get();
@@ -240,7 +242,7 @@ impl<T: Scalar, const N: usize> Evidence<'_, T, N> {
         Ok(likely)
     }
 
-    /// On a lattice that is laid anew where the weight is, until it is as fine as the posterior.
+    /// The posterior on a lattice that is refined where the weight is, until it resolves the posterior.
     fn posterior<const L: usize>(
         &self,
         suppositions: &[Supposition<T>],

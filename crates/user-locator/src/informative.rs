@@ -5,35 +5,37 @@ use kestirim_scalar::Scalar;
 
 use crate::{Area, Waypoint};
 
-/// Places that stand for the posterior.
+/// Number of places that represent the posterior.
 const STANDING: usize = 32;
-/// Waypoints that are compared.
+/// Number of waypoints that are compared.
 const WAYPOINTS: usize = 64;
-/// Outer nodes (in standard deviations) and weights of Gauss and Hermite's rule of three: what may be measured.
+/// Outer nodes (in standard deviations) and weights of the three-point Gauss-Hermite rule, for the levels that may be
+/// measured.
 const NODE: f64 = 1.732_050_807_568_877_2;
 const WEIGHTS: [f64; 2] = [1.0 / 6.0, 2.0 / 3.0];
-/// What is so many deviations off is as unlikely as what is farther.
+/// Limit of a level's deviation, in standard deviations: anything beyond is equally unlikely.
 const FARTHEST: f64 = 100.0;
 
-/// The waypoint from which one more measurement is expected to tell most of where the transmitter is.
+/// The waypoint at which one more measurement is expected to reduce the uncertainty of the transmitter's place most.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Informative<T> {
-    /// Where to measure.
+    /// The place to measure at.
     pub waypoint: Waypoint<T>,
-    /// What is expected to be left of the estimate's uncertainty after that measurement: from 0 to 1, where it tells nothing.
+    /// The expected ratio of the uncertainty after that measurement to that before: from 0 to 1, where 1 means no
+    /// gain.
     pub left: T,
 }
 
-/// A place at which the transmitter may be, and what it lets one expect there.
+/// A place at which the transmitter may be, with the supposition and the fit that predict levels from it.
 pub(crate) struct Standing<T> {
     pub(crate) place: [T; 2],
     pub(crate) supposition: Supposition<T>,
     pub(crate) fit: GroundFit<T>,
 }
 
-/// Places that stand for a posterior, each for as much of its weight.
+/// Places that represent a posterior, each an equal part of its weight.
 pub(crate) fn standing<T: Scalar, const L: usize>(
     posterior: &PointMass<T, 2, L>,
     mut explained: impl FnMut([T; 2]) -> Option<(Supposition<T>, GroundFit<T>)>,
@@ -55,7 +57,7 @@ pub(crate) fn standing<T: Scalar, const L: usize>(
             if let Some(place) = posterior.point(index)
                 && let Some((supposition, fit)) = explained(place)
             {
-                // There is room.
+                // The loop ends when it is full.
                 let _ = all.push(Standing { place, supposition, fit });
             }
         }
@@ -63,8 +65,8 @@ pub(crate) fn standing<T: Scalar, const L: usize>(
     all
 }
 
-/// Of waypoints all over an area the one after whose measurement the mean distance from the posterior's mean is expected to be
-/// least; none if nothing stands for the posterior, or no waypoint is inside.
+/// Of waypoints all over an area, the one after whose measurement the smallest mean distance from the posterior's
+/// mean is expected; `None` if no place represents the posterior, or no waypoint is inside.
 pub(crate) fn most_informative<T: Scalar, const N: usize>(
     all: &[Standing<T>],
     area: &Area<T, N>,
@@ -89,11 +91,11 @@ pub(crate) fn most_informative<T: Scalar, const N: usize>(
     Some(Informative { waypoint: Waypoint { place, height }, left: (after / before).min(T::ONE) })
 }
 
-/// The spread that is expected after a measurement from a waypoint: its mean over all that may be measured there.
+/// The expected spread after a measurement from a waypoint: the mean over all levels that may be measured there.
 fn after<T: Scalar>(all: &[Standing<T>], waypoint: [T; 2], height: T) -> T {
     let mut levels = Vec::<(T, T), STANDING>::new();
     for Standing { place, supposition, fit } in all {
-        // There is room.
+        // It has the same capacity.
         let _ = levels.push(fit.expected(supposition, *place, waypoint, height));
     }
     // Constants one by one, so that no double-precision code reaches a target.

@@ -2,32 +2,33 @@ use kestirim_air_to_ground::Measurement;
 use kestirim_health::{Health, Reason};
 use kestirim_scalar::Scalar;
 
-/// Fewer measurements on either side say nothing of a step, …
+/// Least number of measurements on either side of a step.
 const FEWEST: usize = 3;
-/// … nor does less than this part of all.
+/// A step must have at least one in this many of all measurements on either side.
 const PART: usize = 10;
-/// A step of fewer dB may be shadowing: of eight flights that were looked at, none had one of more than 4.4.
+/// Least size of a step, dB: a smaller one may be shadowing. Of eight flights that were examined, none had one of
+/// more than 4.4.
 const LEAST_DB: f64 = 10.0;
-/// Residuals are counted in so many dB, so that fixed point holds their squares; a power of two, which floats do not
-/// notice.
+/// The unit of residuals, dB, chosen so that fixed point holds their squares; a power of two, which does not affect
+/// the rounding of floating-point numbers.
 const UNIT_DB: f64 = 16.0;
 
-/// A step in the levels of a flight: another gain, another antenna, another transmitter.
+/// A step in the levels of a flight: a change of gain, antenna or transmitter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LevelStep<T> {
-    /// The measurement from which on levels are others: its place among all.
+    /// Index of the first measurement after the step.
     pub at: usize,
-    /// By how much they are, dB: more than ten, up or down.
+    /// Size of the step, dB: more than ten, up or down.
     pub by: T,
 }
 
 impl<T: Scalar> LevelStep<T> {
-    /// The step that explains most of what the measurements differ by, as seen from a transmitter at `place` (m), if it
-    /// is more than half. There are to be three measurements and a tenth of all on either side.
+    /// Finds the step that explains most of the measurements' variance, as seen from a transmitter at `place` (m), if
+    /// it explains more than half. There must be three measurements and a tenth of all on either side.
     ///
-    /// Residuals are of the loss of free space: an exponent that is a little wrong makes a slope, not a step.
+    /// Residuals are relative to free-space loss: a slightly wrong exponent causes a slope, not a step.
     pub fn find(measurements: &[Measurement<T>], place: [T; 2]) -> Option<Self> {
         let number = |count: usize| T::from_binary(count as i32, 0);
         let count = measurements.len();
@@ -45,9 +46,9 @@ impl<T: Scalar> LevelStep<T> {
         for (at, residual) in residuals().enumerate() {
             if (margin..=last).contains(&at) {
                 let (before, after) = (number(at), number(count - at));
-                // The residuals without their mean sum up to nothing: how much the means before and after differ, …
+                // The residuals without their mean sum to zero: by how much the means before and after differ, …
                 let by = -sum / after - sum / before;
-                // … and how much of the squares that explains.
+                // … and the part of the sum of squares that this explains.
                 let explained = (by * (before / number(count))) * (by * after);
                 if explained > most {
                     (found, most) = (Some((at, by)), explained);
@@ -63,7 +64,7 @@ impl<T: Scalar> LevelStep<T> {
     }
 }
 
-/// What was received beyond the loss of free space, in [`UNIT_DB`].
+/// The received level beyond the loss of free space, in units of [`UNIT_DB`].
 fn residual<T: Scalar>(measurement: &Measurement<T>, place: [T; 2]) -> T {
     let horizontal = measurement.horizontal_distance(place);
     let distance = T::norm(&[horizontal, measurement.height()]).max(T::ONE);
@@ -72,7 +73,7 @@ fn residual<T: Scalar>(measurement: &Measurement<T>, place: [T; 2]) -> T {
     loss - measurement.loss() * T::from_f64(1.0 / UNIT_DB)
 }
 
-/// Whether a place that was found from these measurements can be relied upon: not where their levels step.
+/// Whether a place found from these measurements is reliable: not if their levels show a step.
 pub(crate) fn health<T: Scalar>(measurements: &[Measurement<T>], place: [T; 2]) -> Health {
     let is_step = LevelStep::find(measurements, place).is_some();
     Health::GOOD.with(Reason::Innovations, is_step)
@@ -86,7 +87,7 @@ mod tests {
     use kestirim_scalar::Q16_16;
     use std::vec::Vec;
 
-    /// A circle around the place, with a little noise and a step.
+    /// A flight on a circle around the place, with a little noise and a step of `by` (dB).
     fn flight<T: Scalar>(by: f64) -> Vec<Measurement<T>> {
         let stop = |k: u32| {
             let angle = f64::from(k) * 0.2;

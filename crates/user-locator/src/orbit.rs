@@ -2,20 +2,20 @@ use kestirim_scalar::Scalar;
 
 use crate::TrackEstimate;
 
-/// Height of the flight above the user.
+/// The height of the flight above the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Height<T> {
     /// A constant height, m.
     Fixed(T),
-    /// Five times the deviation of a coordinate, between these two, m: high while the user is searched, low to locate
-    /// them precisely. A loss determines the distance best from a third of the height beside the user, and the better
-    /// the lower.
+    /// Five times the standard deviation of a coordinate, between these two limits, m: high while the user is
+    /// searched for, low to locate them precisely. A loss determines the distance best at a horizontal distance of a
+    /// third of the height, and the better the lower the drone flies.
     Between(T, T),
 }
 
-/// Place and height of the next measurement.
+/// Place and height for the next measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -26,9 +26,9 @@ pub struct Waypoint<T> {
     pub height: T,
 }
 
-/// Flight plan: circles about the predicted place of the user.
+/// A flight plan of circles around the predicted place of the user.
 ///
-/// Right above the user a loss does not change with the direction in which they go; the thesis' drone, which
+/// Directly above the user, the loss does not depend on the direction in which they move; the thesis' drone, which
 /// flies there, cannot observe it. The radius follows the uncertainty of the estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -41,7 +41,7 @@ pub struct Orbit<T> {
 }
 
 impl<T: Scalar> Orbit<T> {
-    /// Starts in the east, with 0.6 rad between waypoints.
+    /// Creates a plan that starts in the east, with 0.6 rad between waypoints.
     #[inline]
     pub fn new(height: Height<T>) -> Self {
         Self { height, advance: T::from_f64(0.6), angle: T::ZERO }

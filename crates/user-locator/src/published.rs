@@ -13,14 +13,14 @@ use crate::seen::Seen;
 pub struct PublishedSettings<T> {
     /// Resampling scheme.
     pub resampler: Resampler,
-    /// Share of effective particles below which they are resampled: `N_th/L`.
+    /// The effective share of the particles below which they are resampled: `N_th/L`.
     pub threshold: T,
-    /// Standard deviation of the jitter of each coordinate and step, m.
+    /// Standard deviation of the jitter per coordinate and step, m.
     pub jitter: T,
 }
 
 impl<T: Scalar> PublishedSettings<T> {
-    /// Systematic resampling, `N_th` = L/10, 10 m: the settings of the published tables.
+    /// The settings of the published tables: systematic resampling, `N_th` = L/10, jitter of 10 m.
     #[inline]
     pub fn thesis() -> Self {
         Self {
@@ -48,7 +48,7 @@ pub struct PublishedLocator<T, const L: usize> {
 }
 
 impl<T: Scalar, const L: usize> PublishedLocator<T, L> {
-    /// Particles all over a region (m).
+    /// Creates a filter with particles spread at random over a region (m).
     #[inline]
     pub fn new<R: Rng + ?Sized>(
         channel: Channel<T>,
@@ -60,10 +60,10 @@ impl<T: Scalar, const L: usize> PublishedLocator<T, L> {
         Self { channel, settings, particles }
     }
 
-    /// The same with `count` particles.
+    /// Creates a filter as [`PublishedLocator::new`] does, with `count` particles.
     ///
     /// # Errors
-    /// [`Error::Filter`] with `NotPositive` for none, with `TooMany` for more than L.
+    /// [`Error::Filter`] with `NotPositive` if `count` is zero, with `TooMany` if it exceeds L.
     #[inline]
     pub fn with_count<R: Rng + ?Sized>(
         count: usize,
@@ -76,10 +76,10 @@ impl<T: Scalar, const L: usize> PublishedLocator<T, L> {
         Ok(Self { channel, settings, particles })
     }
 
-    /// Takes in a measurement: lines 5 to 15.
+    /// Processes a measurement: lines 5 to 15.
     ///
     /// # Errors
-    /// [`Error::Filter`] if no particle explains it; then nothing has changed.
+    /// [`Error::Filter`] if no particle explains it; nothing is changed.
     #[inline]
     pub fn measure<R: Rng + ?Sized>(
         &mut self,

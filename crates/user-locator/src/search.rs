@@ -4,10 +4,11 @@ use kestirim_scalar::Scalar;
 use crate::level_step::health;
 use crate::{Area, BeaconEstimate, Error, Health, Thinned};
 
-/// Searches an area of up to N corners, over open ground, for a transmitter from any number of measurements, of which
-/// up to M are kept.
+/// Searches an area of up to N corners, over open ground, for a transmitter, from any number of measurements, of
+/// which up to M are kept.
 ///
-/// [`Area`], [`Thinned`] and the posterior of [`Beacon`](crate::Beacon) in one. 16·M + 8·N bytes in single precision.
+/// Combines [`Area`], [`Thinned`] and the posterior of [`Beacon`](crate::Beacon). 16·M + 8·N bytes in single
+/// precision.
 ///
 /// ```
 /// use kestirim_air_to_ground::{FreeSpace, Measurement};
@@ -39,32 +40,32 @@ pub struct BeaconSearch<T, const M: usize, const N: usize> {
 }
 
 impl<T: Scalar, const M: usize, const N: usize> BeaconSearch<T, M, N> {
-    /// A search in an area before its first measurement.
+    /// Creates a search in an area, before its first measurement.
     #[inline]
     pub fn new(channel: FreeSpace<T>, area: Area<T, N>) -> Self {
         const { assert!(M <= 128, "the channel reads no more") };
         Self { channel, area, measurements: Thinned::new() }
     }
 
-    /// Takes in a measurement, of which the loss is the negative received level.
+    /// Adds a measurement, whose loss is the negative received level.
     #[inline]
     pub fn measure(&mut self, measurement: &Measurement<T>) {
         self.measurements.push(*measurement);
     }
 
-    /// The measurements that are kept, in their order.
+    /// The measurements kept, in order.
     #[inline]
     pub fn measurements(&self) -> &[Measurement<T>] {
         self.measurements.as_slice()
     }
 
-    /// Area in which the transmitter is searched.
+    /// The area in which the transmitter is searched.
     #[inline]
     pub fn area(&self) -> &Area<T, N> {
         &self.area
     }
 
-    /// Posterior of the transmitter in the area, on a lattice of L points over its bounding box.
+    /// The posterior of the transmitter's place in the area, on a lattice of L points over its bounding box.
     ///
     /// # Errors
     /// [`Error::Filter`] with `Degenerate` if no point of the lattice lies inside and explains the measurements.
@@ -73,8 +74,8 @@ impl<T: Scalar, const M: usize, const N: usize> BeaconSearch<T, M, N> {
         BeaconEstimate::of(self.channel, self.measurements(), self.area.region(), inside)
     }
 
-    /// Whether a place belongs to the smallest region that holds the transmitter with this probability (0 to 1). The
-    /// estimate must be that of the same measurements.
+    /// Whether a place belongs to the smallest region that contains the transmitter with this probability (0 to 1).
+    /// The estimate must be from the same measurements.
     pub fn credible<const L: usize>(
         &self,
         estimate: &BeaconEstimate<T, L>,
@@ -84,8 +85,8 @@ impl<T: Scalar, const M: usize, const N: usize> BeaconSearch<T, M, N> {
         estimate.is_credible(self.measurements(), place, probability)
     }
 
-    /// Whether an estimate from these measurements can be relied upon: `innovations` where their levels step
-    /// ([`LevelStep`](crate::LevelStep)), seen from its place.
+    /// Whether an estimate from these measurements is reliable: reports `innovations` if their levels show a step
+    /// ([`LevelStep`](crate::LevelStep)) as seen from the estimated place.
     pub fn health<const L: usize>(&self, estimate: &BeaconEstimate<T, L>) -> Health {
         health(self.measurements(), estimate.place)
     }

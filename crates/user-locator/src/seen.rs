@@ -2,8 +2,8 @@ use kestirim_air_to_ground::{Likelihood as Channel, Measurement};
 use kestirim_particle_filter::Likelihood;
 use kestirim_scalar::Scalar;
 
-/// A measurement through a channel: its likelihood for a place, which are a state's first two coordinates. With three of
-/// them the last is by how much (dB) the transmitter is weaker than the measurement assumes.
+/// A measurement through a channel, as a likelihood of states whose first two coordinates are the place. The third
+/// one, if there are three, is the amount (dB) by which the transmitter is weaker than the measurement assumes.
 pub(crate) struct Seen<'a, T, C> {
     pub(crate) channel: &'a C,
     pub(crate) measurement: &'a Measurement<T>,

@@ -1,24 +1,24 @@
 use heapless::Vec;
 
-/// Evenly spaced values of a stream of unknown length, up to M of them with the last one.
+/// Evenly spaced values of a stream of unknown length: up to M of them, including the last one.
 ///
-/// Measurements of a flight that are close together say much the same: of a long one, few tell where the user is. When
-/// the room is full every other value is dropped, and from then on half as many are kept.
+/// Measurements of a flight that are close together carry much the same information: of a long flight, a few suffice
+/// to locate the user. When the room is full, every other value is dropped, and from then on half as many are kept.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Thinned<V, const M: usize> {
-    /// One in `stride`, and the last value of all, whether or not it is one of these.
+    /// One value in `stride`, and the last one of all, whether or not it is one of these.
     kept: Vec<V, M>,
-    /// Whether the last value is to make room for the next.
+    /// Whether the last value is replaced by the next.
     is_passing: bool,
-    /// A power of two.
+    /// The spacing of the values kept: a power of two.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "power_of_two"))]
     stride: u64,
     /// Number of values so far.
     count: u64,
 }
 
-/// A stride that there can be.
+/// Deserialises a stride, which must be a power of two.
 #[cfg(feature = "serde")]
 fn power_of_two<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
     let stride = <u64 as serde::Deserialize>::deserialize(deserializer)?;
@@ -42,7 +42,7 @@ impl<V: Copy, const M: usize> Thinned<V, M> {
         if self.is_passing {
             self.kept.pop();
         }
-        // One place is the last value's.
+        // One slot is reserved for the last value.
         if self.kept.len() + 1 >= M && self.is_due() {
             self.halve();
         }
@@ -52,7 +52,7 @@ impl<V: Copy, const M: usize> Thinned<V, M> {
         self.count = self.count.wrapping_add(1);
     }
 
-    /// Whether the next value is one that stays.
+    /// Whether the next value is one that is kept.
     fn is_due(&self) -> bool {
         self.count & (self.stride - 1) == 0
     }
@@ -67,11 +67,11 @@ impl<V: Copy, const M: usize> Thinned<V, M> {
             left += 1;
         }
         self.kept.truncate(left);
-        // No stream is as long as a stride that does not fit.
+        // No stream is long enough for a stride that does not fit.
         self.stride = self.stride.checked_mul(2).unwrap_or(self.stride);
     }
 
-    /// The values that are left, in the order in which they came.
+    /// The values kept, in order of arrival.
     #[inline]
     pub fn as_slice(&self) -> &[V] {
         &self.kept

@@ -10,28 +10,28 @@ use rand_core::Rng;
 use crate::Error;
 use crate::seen::Seen;
 
-/// Motion model of a user, and the threshold of the filter's divergence.
+/// Motion model of a user, and the threshold at which the filter counts as diverged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Motion<T> {
-    /// Standard deviation of each component of a user's velocity before anything is known, m/s.
+    /// Initial standard deviation of each component of a user's velocity, m/s.
     pub speed: T,
-    /// Process noise of the velocity: standard deviation after a second, m/s.
+    /// Process noise of the velocity: standard deviation after one second, m/s.
     pub velocity_noise: T,
-    /// Process noise of the place: standard deviation after a second, m.
+    /// Process noise of the place: standard deviation after one second, m.
     pub place_noise: T,
-    /// Roughening: the least noise of a step as a share of the cloud's own spread, so that a cloud that is still wide
-    /// does not commit itself to a velocity.
+    /// Roughening: the minimum noise of a step as a fraction of the cloud's own spread, so that a cloud that is still
+    /// wide does not commit itself to a velocity.
     pub roughening: T,
-    /// The mean logarithm of the evidence (per dB) of the last ten measurements below which the cloud is spread
-    /// anew; never if none.
+    /// Threshold of the mean log-evidence (density per dB) over about the last ten measurements, below which the
+    /// cloud is spread anew; `None` disables this.
     pub least_evidence: Option<T>,
 }
 
 impl<T: Scalar> Motion<T> {
-    /// People on foot or by bicycle, measured through the thesis' channel as it is: to a quarter of a decibel
-    /// from nearby.
+    /// People on foot or by bicycle, with the thesis' channel unchanged: losses are measured to a quarter of a
+    /// decibel from nearby.
     #[inline]
     pub fn people() -> Self {
         Self {
@@ -43,9 +43,9 @@ impl<T: Scalar> Motion<T> {
         }
     }
 
-    /// The same, measured to `sigma` (dB) at best: see
-    /// [`Channel::with_least_sigma`](kestirim_air_to_ground::Channel::with_least_sigma). What is measured less
-    /// precisely is less dense.
+    /// People on foot or by bicycle, with losses measured to `sigma` (dB) at best: see
+    /// [`Channel::with_least_sigma`](kestirim_air_to_ground::Channel::with_least_sigma). Less precise measurements
+    /// have smaller densities, and the threshold is lowered accordingly.
     #[inline]
     pub fn people_measured_to(sigma: T) -> Self {
         let quarters = (sigma * T::from_f64(4.0)).max(T::ONE);
@@ -54,13 +54,12 @@ impl<T: Scalar> Motion<T> {
     }
 }
 
-/// Tracks a user who moves.
+/// Tracks a moving user with a Rao–Blackwellised particle filter.
 ///
-/// Each particle is a place and the mean velocity that its own path implies; the velocity's variance is the same
-/// for all, because it follows a Kalman filter whose measurements are the steps drawn (a Rao–Blackwellised
-/// filter: Schön, Gustafsson and Nordlund, IEEE Trans. Signal Processing 53(7), 2005). A cloud of places *and*
-/// velocities would need many times as many particles, and diverges from a start in which neither is known.
-/// 28·L bytes in single precision.
+/// Each particle is a place and the mean velocity implied by its own path; the variance of the velocity is the same
+/// for all, because it follows a Kalman filter whose measurements are the drawn steps (Schön, Gustafsson and
+/// Nordlund, IEEE Trans. Signal Processing 53(7), 2005). A cloud of places *and* velocities would need many times as
+/// many particles, and diverges from a start in which neither is known. 28·L bytes in single precision.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -74,17 +73,17 @@ pub struct Tracker<T, const L: usize, C = Channel<T>> {
     channel: C,
     motion: Motion<T>,
     region: Region<T, 2>,
-    /// Place (m) and mean velocity (m/s).
+    /// The particles: place (m) and mean velocity (m/s).
     particles: Particles<T, 4, L>,
     /// Standard deviation of each component of the velocity, m/s.
     velocity_deviation: T,
     /// The estimate at the last measurement.
     estimate: TrackEstimate<T>,
-    /// Running mean of the evidence's logarithm.
+    /// Running mean of the log-evidence.
     evidence: T,
 }
 
-/// Place and velocity of a user.
+/// The place and velocity of a user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -102,7 +101,7 @@ where
     T: Scalar,
     C: Likelihood<T>,
 {
-    /// A user who is equally likely to be anywhere in a region (m).
+    /// Creates a tracker for a user who is equally likely to be anywhere in a region (m).
     #[inline]
     pub fn new<R: Rng + ?Sized>(
         channel: C,
@@ -114,10 +113,10 @@ where
         Self::of(particles, channel, motion, region)
     }
 
-    /// The same with `count` particles.
+    /// Creates a tracker as [`Tracker::new`] does, with `count` particles.
     ///
     /// # Errors
-    /// [`Error::Filter`] with `NotPositive` for none, with `TooMany` for more than L.
+    /// [`Error::Filter`] with `NotPositive` if `count` is zero, with `TooMany` if it exceeds L.
     #[inline]
     pub fn with_count<R: Rng + ?Sized>(
         count: usize,
@@ -152,7 +151,7 @@ where
     /// Predicts over `interval` (s).
     ///
     /// # Errors
-    /// [`Error::Filter`] with `NotFinite` or `NotPositive` for such an interval; then nothing has changed.
+    /// [`Error::Filter`] with `NotFinite`, or `NotPositive` for a negative interval; nothing is changed.
     pub fn predict<R: Rng + ?Sized>(&mut self, interval: T, rng: &mut R) -> Result<(), Error> {
         if !interval.is_finite() {
             return Err(FilterError::NotFinite.into());
@@ -162,11 +161,11 @@ where
         }
         let motion = &self.motion;
         let root = interval.sqrt();
-        // Of each coordinate: the spread is that of both.
+        // Per coordinate: the spread is that of both.
         let roughening = motion.roughening * self.estimate.spread * T::from_f64(FRAC_1_SQRT_2);
         let place_noise = (motion.place_noise * root).max(roughening);
         let drift = self.velocity_deviation * interval;
-        // A step deviates by √(drift² + place_noise²); what of it is velocity, the Kalman gain says.
+        // A step's standard deviation is √(drift² + place_noise²); the Kalman gain tells how much of it is velocity.
         let step = T::norm(&[drift, place_noise]).max(T::EPSILON);
         let share = drift / step;
         let gain = share * (self.velocity_deviation / step);
@@ -182,10 +181,10 @@ where
         Ok(())
     }
 
-    /// Takes in a measurement of the present time.
+    /// Processes a measurement of the present time.
     ///
     /// # Errors
-    /// [`Error::Filter`] with `Degenerate` if no particle explains it; then nothing has changed.
+    /// [`Error::Filter`] with `Degenerate` if no particle explains it; nothing is changed.
     pub fn measure<R: Rng + ?Sized>(
         &mut self,
         measurement: &Measurement<T>,
@@ -200,9 +199,9 @@ where
         Ok(update)
     }
 
-    /// Spreads a cloud anew that has not explained the last measurements.
+    /// Spreads the cloud anew if it has not explained the last measurements.
     fn judge<R: Rng + ?Sized>(&mut self, log_evidence: T, rng: &mut R) {
-        // One measurement alone must not do it.
+        // A single measurement must not trigger it.
         let evidence = log_evidence.max(-T::from_f64(20.0));
         self.evidence += (evidence - self.evidence) * T::from_f64(0.1);
         if self.motion.least_evidence.is_some_and(|least| self.evidence < least) {
@@ -224,7 +223,7 @@ where
         self.estimate
     }
 
-    /// Mean and spread of the place now.
+    /// The present mean and spread of the place.
     #[inline]
     pub fn moments(&self) -> Moments<T, 2> {
         self.particles.moments_of(place)

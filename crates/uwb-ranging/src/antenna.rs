@@ -1,4 +1,4 @@
-//! The delay between the timestamp and the antenna.
+//! The antenna delay: the time between the timestamping in the chip and the radiation at the antenna.
 
 use crate::ticks::light_distance;
 use crate::{Error, METRES_PER_TICK};
@@ -14,27 +14,28 @@ use kestirim_scalar::Scalar;
 pub struct AntennaDelay(i32);
 
 impl AntennaDelay {
-    /// From ticks; what an earlier setting took too much is negative.
+    /// Creates a delay from ticks; negative if an earlier setting compensates for too much.
     #[inline]
     pub const fn new(ticks: i32) -> Self {
         Self(ticks)
     }
 
-    /// In ticks.
+    /// The delay in ticks.
     #[inline]
     pub const fn ticks(self) -> i32 {
         self.0
     }
 
-    /// Excess of a distance between the two radios (m), to be subtracted from it.
+    /// The excess of a measured distance between the two radios (m), to be subtracted from it.
     pub fn excess<T: Scalar>(self, other: Self) -> T {
         light_distance(i128::from(self.0).wrapping_add(i128::from(other.0)), 2)
     }
 
-    /// The delay of both radios of a pair alike, from the excess (m) of their mean distance over the true one.
+    /// The delay of each of two equal radios, from the excess (m) of their mean measured distance over the true
+    /// one.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; also beyond 10⁶ m.
+    /// [`Error::NotFinite`], also for an excess beyond 10⁶ m.
     pub fn of_each<T: Scalar>(excess: T) -> Result<Self, Error> {
         Self::from_metres(excess)
     }
@@ -43,7 +44,7 @@ impl AntennaDelay {
     /// over the true ones (APS014's procedure in closed form).
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; also beyond 10⁶ m.
+    /// [`Error::NotFinite`], also for delays beyond 10⁶ m.
     pub fn of_three<T: Scalar>(ab: T, ac: T, bc: T) -> Result<[Self; 3], Error> {
         Ok([
             Self::from_metres(ab + ac - bc)?,

@@ -4,14 +4,13 @@ use heapless::Vec;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// Biases of A anchors, from points that are known and points that are not.
+/// Estimates the range biases of A anchors from measurements at known and unknown points.
 ///
-/// At every point the tag stands still for a while, and the median range of each anchor is taken. At
-/// an unknown point, what the ranges say about its place is eliminated, and the rest says something about
-/// the biases; nothing is stored of a point. With four anchors in the plane little is left (no
-/// better than a common bias): mark at least one point, better three. From six anchors on, ten unknown
-/// points do nearly as well as known ones (8 anchors, 90 recorded points: 6.5 cm against 5.6; a common
-/// bias 9.2).
+/// At every point the tag stands still for a while, and the median range of each anchor is taken. At an unknown
+/// point the position is eliminated from the equations, and what remains constrains the biases; nothing is stored
+/// per point. With four anchors in the plane little remains (no better than a common bias): mark at least one
+/// point, better three. From six anchors on, ten unknown points do nearly as well as known ones (8 anchors, 90
+/// recorded points: 6.5 cm against 5.6 cm; a common bias: 9.2 cm).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -25,25 +24,26 @@ use nalgebra::SVector;
 pub struct Calibration<T: Scalar, const A: usize> {
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     anchors: [SVector<T, 3>; A],
-    /// Normal equations of the biases, times the variance of a range.
+    /// Normal equations of the biases, multiplied by the variance of a range.
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays::rows"))]
     normal: [[T; A]; A],
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     right: [T; A],
 }
 
-/// Standard deviation of a link from place to place, m.
+/// Standard deviation with which the error of a link varies from place to place, m.
 pub(crate) const LINK_SIGMA: f64 = 0.07;
-/// Standard deviation of an anchor's bias around the common one, m: less where few anchors leave little to learn from.
+/// Standard deviation of an anchor's own bias about the common one, m; smaller where five anchors or fewer
+/// constrain it little.
 const ANCHOR_SIGMA: f64 = 0.1;
 const ANCHOR_SIGMA_OF_FEW: f64 = 0.06;
 /// Standard deviation of the common bias, m.
 const COMMON_SIGMA: f64 = 0.3;
-/// Standard deviation of a marked point, m.
+/// Standard deviation of the position of a marked point, m.
 const MARK_SIGMA: f64 = 0.02;
 
 impl<T: Scalar, const A: usize> Calibration<T, A> {
-    /// Begins for anchors at these places (room axes, m).
+    /// Creates a calibration for anchors at these positions (room frame, m).
     ///
     /// # Errors
     /// [`Error::NotFinite`].
@@ -64,7 +64,7 @@ impl<T: Scalar, const A: usize> Calibration<T, A> {
         Ok(Self { anchors, normal, right: [T::ZERO; A] })
     }
 
-    /// Takes in the median ranges (m) of a point whose place is known (m).
+    /// Adds the median ranges (m) taken at a point whose position (m) is known.
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::TooFewRanges`]; nothing is changed.
@@ -77,12 +77,12 @@ impl<T: Scalar, const A: usize> Calibration<T, A> {
         self.add(position, T::ZERO, medians, stiffness)
     }
 
-    /// Takes in the median ranges (m) of a point that is not known, in D dimensions; with D = 2 its
-    /// `height` (m) is.
+    /// Adds the median ranges (m) taken at a point of unknown position, in D dimensions; with D = 2 its `height`
+    /// (m) must be known.
     ///
     /// # Errors
-    /// [`Error::TooFewRanges`] unless there are two more than dimensions, or why no position could be
-    /// found; nothing is changed.
+    /// [`Error::TooFewRanges`] unless there are at least D + 2 ranges, or the reason why no position was found;
+    /// nothing is changed.
     pub fn add_unknown<const D: usize>(
         &mut self,
         height: T,
@@ -104,15 +104,16 @@ impl<T: Scalar, const A: usize> Calibration<T, A> {
         self.add(&fix.position, height, medians, T::ZERO)
     }
 
-    /// The biases as known so far, m.
+    /// The current estimates of the biases, m.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] if the sums have run out of the range of fixed point.
+    /// [`Error::NotFinite`] if the sums have left the range of fixed point.
     pub fn biases(&self) -> Result<[T; A], Error> {
         solved(&self.normal, &self.right).ok_or(Error::NotFinite)
     }
 
-    /// N += W, g += W (z − r) with W = 1 − J (Λ + JᵀJ)⁻¹ Jᵀ for the anchors that were heard.
+    /// Adds a point to the normal equations: N += W, g += W (z − r), with W = 1 − J (Λ + JᵀJ)⁻¹ Jᵀ over the anchors
+    /// that were heard.
     fn add<const D: usize>(
         &mut self,
         position: &SVector<T, D>,
@@ -160,7 +161,7 @@ impl<T: Scalar, const A: usize> Calibration<T, A> {
     }
 }
 
-/// N⁻¹ g of a positive definite N, by elimination; `None` if a pivot is not positive.
+/// Solves N x = g for a positive definite N by elimination; `None` if a pivot is not positive.
 pub(crate) fn solved<T: Scalar, const A: usize>(
     normal: &[[T; A]; A],
     right: &[T; A],

@@ -23,7 +23,7 @@ pub enum Channel {
     Seven,
 }
 
-/// The data rate, which sets how long the carrier loop integrates.
+/// The data rate, which determines the integration time of the carrier loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -35,39 +35,39 @@ pub enum DataRate {
     Kbps850OrMore,
 }
 
-/// Rate of the local (initiator's) clock relative to the remote one, less one: an interval of the
-/// remote clock times (1 + offset) is the same interval on the local clock. Within ±1953 ppm; DW1000s allow each
-/// other ±40 ppm.
+/// Rate of the local (initiator's) clock relative to the remote one, minus one: an interval of the remote clock
+/// times (1 + offset) is the same interval on the local clock.
 ///
-/// Kept in units of 2⁻⁴⁰ whatever the scalar type: 0.05 mm of a reply of 200 ms.
+/// Limited to ±1953 ppm; two DW1000s may differ by ±40 ppm. Stored in units of 2⁻⁴⁰ whatever the scalar type, which
+/// is 0.05 mm for a reply time of 200 ms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClockOffset(i32);
 
 impl ClockOffset {
-    /// Equal clocks.
+    /// Both clocks run at the same rate.
     pub const ZERO: Self = Self(0);
-    /// Fractional bits of [`ClockOffset::to_bits`].
+    /// Number of fractional bits of [`ClockOffset::to_bits`].
     pub const FRACTION: u32 = 40;
 
-    /// From units of 2⁻⁴⁰.
+    /// Creates an offset from units of 2⁻⁴⁰.
     #[inline]
     pub const fn from_bits(bits: i32) -> Self {
         Self(bits)
     }
 
-    /// In units of 2⁻⁴⁰.
+    /// The offset in units of 2⁻⁴⁰.
     #[inline]
     pub const fn to_bits(self) -> i32 {
         self.0
     }
 
-    /// From the carrier recovery integrator `DRX_CAR_INT` after a message from the remote radio, either as
-    /// the raw register or sign-extended (its lower 21 bits count).
+    /// The offset from the carrier recovery integrator `DRX_CAR_INT`, read after a message from the remote radio:
+    /// the raw register or its sign-extended value (only the lower 21 bits are used).
     ///
-    /// Constants and sign are those of Decawave's `deca_device_api.h` (`FREQ_OFFSET_MULTIPLIER`,
-    /// `HERTZ_TO_PPM_MULTIPLIER_CHAN_x`), whose ratio is remote against local; ours is its inverse.
+    /// The constants and the sign are those of Decawave's `deca_device_api.h` (`FREQ_OFFSET_MULTIPLIER`,
+    /// `HERTZ_TO_PPM_MULTIPLIER_CHAN_x`), whose ratio is remote against local; this one is the inverse.
     pub fn from_carrier_integrator(integrator: i32, channel: Channel, rate: DataRate) -> Self {
         // Remote against local, per count, in units of 2⁻⁶⁴.
         let per_count = match channel {
@@ -81,7 +81,7 @@ impl ClockOffset {
             DataRate::Kbps850OrMore => 24,
         };
         let counts = i64::from((integrator << 11) >> 11);
-        // Below 2³¹, as is its square below 2⁶².
+        // The magnitude is below 2³¹, and that of its square below 2⁶².
         let ratio = counts.wrapping_mul(per_count).wrapping_neg() >> shift;
         // 1/(1 + ratio) − 1 = −ratio·(1 − ratio·(1 − ratio…)); the next term is 10⁻¹³ at 600 ppm.
         let second = ratio.wrapping_mul(ratio) >> Self::FRACTION;
@@ -89,8 +89,9 @@ impl ClockOffset {
         Self::saturated(series.wrapping_sub(ratio))
     }
 
-    /// From the same interval on both clocks: between two messages' departures on one and their arrivals on
-    /// the other. The longer, the better; the tag's motion in between (m/s against c) is part of it.
+    /// The offset from one interval measured on both clocks: between the departures of two messages on one and
+    /// their arrivals on the other. A longer interval is more accurate; the tag's motion meanwhile (its speed over
+    /// c) enters the offset.
     ///
     /// # Errors
     /// [`Error::EmptyExchange`] for a remote interval of zero.
@@ -98,12 +99,12 @@ impl ClockOffset {
         Self::between(local.signed(), remote.signed())
     }
 
-    /// In parts per million, within ±1953.
+    /// The offset in parts per million, within ±1953.
     pub fn ppm<T: Scalar>(self) -> T {
         T::from_f32(self.0 as f32 * const { (1e6 / (1_u64 << 40) as f64) as f32 })
     }
 
-    /// From parts per million; saturates at ±1953, and what is not finite is zero.
+    /// Creates an offset from parts per million; saturates at ±1953, and a value that is not finite gives zero.
     pub fn from_ppm<T: Scalar>(ppm: T) -> Self {
         if !ppm.is_finite() {
             return Self::ZERO;
@@ -111,7 +112,7 @@ impl ClockOffset {
         Self((ppm.to_f32() * const { ((1_u64 << 40) as f64 / 1e6) as f32 }) as i32)
     }
 
-    /// local/remote − 1; the difference is exact, the quotient good to 2·10⁻⁷ of itself.
+    /// local/remote − 1; the difference is exact, the quotient has a relative error of 2·10⁻⁷.
     pub(crate) fn between(local: i64, remote: i64) -> Result<Self, Error> {
         if remote <= 0 {
             return Err(Error::EmptyExchange);
@@ -120,7 +121,8 @@ impl ClockOffset {
         Ok(Self((ratio * const { (1_u64 << 40) as f32 }) as i32))
     }
 
-    /// 499.2 MHz / 1024 / 2¹⁷ a count at 850 kbit/s and above, by the carrier frequency, in units of 2⁻⁶⁴.
+    /// The ratio of one count, in units of 2⁻⁶⁴: 499.2 MHz / 1024 / 2¹⁷ (at 850 kbit/s and above) over the carrier
+    /// frequency.
     const fn per_count(carrier: f64) -> i64 {
         (499.2e6 / 1024.0 / 131_072.0 / carrier * 18_446_744_073_709_551_616.0 + 0.5) as i64
     }

@@ -1,10 +1,11 @@
-//! A bias that all ranges have in common, beside the position.
+//! A bias common to all ranges, estimated together with the position.
 
 use crate::symmetric::{Factors, NormalEquations};
 use kestirim_scalar::Scalar;
 
-/// The last row of the normal equations, in which each range adds 1: hᵀ x + s bias = g. It is eliminated before the position
-/// is solved for, so that the position's equations are as many with a bias as without.
+/// The last row of the normal equations, in which each range has the coefficient 1: hᵀ x + s bias = g. It is
+/// eliminated before the position is solved for, so that the position's equations have the same size with and
+/// without a bias.
 pub(crate) struct CommonBias<T, const D: usize> {
     along: [T; D],
     weight: T,
@@ -25,7 +26,7 @@ impl<T: Scalar, const D: usize> CommonBias<T, D> {
         self.right += weight * value;
     }
 
-    /// A − h hᵀ / s and b − h g / s.
+    /// Subtracts the eliminated bias from the position's equations: A − h hᵀ / s and b − h g / s.
     pub(crate) fn eliminate_from(&self, equations: &mut NormalEquations<T, D>) {
         let divisor = self.weight.divisor();
         for i in 0..D {
@@ -37,12 +38,12 @@ impl<T: Scalar, const D: usize> CommonBias<T, D> {
         }
     }
 
-    /// The bias beside this position.
+    /// The bias that belongs to this position.
     pub(crate) fn solve(&self, position: &[T; D]) -> T {
         (self.right - T::dot(&self.along, position)) / self.weight
     }
 
-    /// The bias's variance for weights that are reciprocal variances: (1 + hᵀ A⁻¹ h / s) / s.
+    /// The variance of the bias for weights that are reciprocal variances: (1 + hᵀ A⁻¹ h / s) / s.
     pub(crate) fn variance(&self, factors: &Factors<T, D>) -> T {
         let through = factors.solve(&self.along);
         (T::ONE + T::dot(&self.along, &through) / self.weight) / self.weight

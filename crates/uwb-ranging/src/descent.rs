@@ -1,4 +1,4 @@
-//! Gauss and Newton's steps from one start, one after the other.
+//! Gauss-Newton iterations from one start.
 
 use crate::common_bias::CommonBias;
 use crate::symmetric::NormalEquations;
@@ -6,7 +6,7 @@ use crate::{Error, Fix, Huber, Observation, Solver, expected_range};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
-/// Where the steps from one start have come to.
+/// The state of the iterations from one start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -23,34 +23,35 @@ pub(crate) struct Descent<T: Scalar, const D: usize> {
     steps: u16,
 }
 
-/// What a step came to.
+/// The outcome of a step.
 pub(crate) enum Step<T: Scalar, const D: usize> {
-    /// One of the first, which tell nothing yet.
+    /// One of the first steps, whose cost and length say nothing yet.
     First,
-    /// Somewhere on the way: what it cost there, and how far the step went (m).
+    /// An intermediate step: the cost before it and the length of the step (m).
     Next { cost: T, moved: T },
     /// A minimum.
     Settled(Fix<T, D>),
 }
 
-/// How exactly a minimum is to be found.
+/// Convergence criteria for a minimum.
 pub(crate) struct Care<T> {
-    /// A step of no more than this ends the search, m.
+    /// Steps no longer than this end the search, m.
     settled: T,
-    /// After so many steps …
+    /// Number of steps from which `slow` replaces `settled`.
     many: u16,
-    /// … one of no more than this does, m.
+    /// The step length that ends the search after `many` steps, m.
     slow: T,
 }
 
 impl<T: Scalar> Care<T> {
-    /// To the millimetre.
+    /// Criteria for convergence to a millimetre.
     pub(crate) fn exact() -> Self {
         let settled = T::from_f64(1e-3);
         Self { settled, many: 30, slow: settled }
     }
 
-    /// So that a filter can begin there: Huber's weights would take dozens of steps for ranges that contradict each other.
+    /// Criteria for a filter's initial position: Huber's weights would take dozens of steps on contradictory
+    /// ranges.
     pub(crate) fn rough() -> Self {
         Self { settled: T::from_f64(1e-2), many: 12, slow: T::from_f64(0.1) }
     }
@@ -58,23 +59,23 @@ impl<T: Scalar> Care<T> {
 
 impl<T: Scalar, const D: usize> Descent<T, D> {
     const MOST_STEPS: u16 = 30;
-    /// Steps in which every range counts, so that Huber's weights begin near the answer.
+    /// Initial steps in which every range has its full weight, so that Huber's weights begin near the answer.
     const PLAIN_STEPS: u16 = 3;
 
-    /// Before the first step from here (m).
+    /// The state before the first step from `start` (m).
     pub(crate) fn from(start: SVector<T, D>) -> Self {
         Self { position: start, bias: T::ZERO, steps: 0 }
     }
 
-    /// Where it is, m.
+    /// The current position, m.
     pub(crate) fn position(&self) -> &SVector<T, D> {
         &self.position
     }
 
-    /// The next step.
+    /// Takes the next step.
     ///
     /// # Errors
-    /// [`Error::DegenerateGeometry`] or [`Error::NotConverged`]: no minimum is reached from this start.
+    /// [`Error::DegenerateGeometry`] or [`Error::NotConverged`] if no minimum can be reached from this start.
     pub(crate) fn step(
         &mut self,
         solver: &Solver<T>,
@@ -148,14 +149,14 @@ pub(crate) struct Noise<T> {
 }
 
 impl<T: Scalar> Noise<T> {
-    /// Of this variance, m².
+    /// The noise of a best range with this variance, m².
     pub(crate) fn new(variance: T) -> Self {
         let sigma = variance.sqrt();
         Self { variance, sigma, per_sigma: sigma.recip() }
     }
 
-    /// The weight of a residual of this variance and what it costs. Roots and divisions only where they
-    /// change something: a processor without a floating-point unit is in here most of a start.
+    /// The weight and the cost of a residual with this variance. Roots and divisions are only taken where they
+    /// change something: a processor without a floating-point unit spends most of a start here.
     fn weighed(&self, residual: T, variance: T, huber: Option<Huber<T>>) -> (T, T) {
         let alike = variance == self.variance;
         let weight = if alike { T::ONE } else { self.variance / variance };
@@ -174,7 +175,7 @@ impl<T: Scalar> Noise<T> {
     }
 }
 
-/// A step of no more than 2 m: far from the answer the distances are not linear.
+/// A step limited to 2 m: far from the answer, the distances are not linear.
 fn limited<T: Scalar, const D: usize>(step: [T; D], bias: T) -> ([T; D], T) {
     let mut length = T::norm(&step);
     if bias != T::ZERO {

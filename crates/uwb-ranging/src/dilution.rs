@@ -2,8 +2,8 @@ use crate::Error;
 use crate::symmetric::{Factors, NormalEquations};
 use kestirim_scalar::Scalar;
 
-/// The dilution of precision: by how much the anchors' places magnify the error of a range into that of
-/// the position, √(tr (HᵀH)⁻¹) for the directions H towards the tag (Langley 1999).
+/// The dilution of precision: the factor by which the anchors' geometry magnifies a range error into a position
+/// error, √(tr (HᵀH)⁻¹) for the directions H towards the tag (Langley 1999).
 ///
 /// Four anchors around a tag in the plane give 1; more than 5 is a poor geometry.
 ///
@@ -15,11 +15,13 @@ pub fn dilution_of_precision<T: Scalar, const D: usize>(
     weighted_dilution(directions.into_iter().map(|direction| (direction, T::ONE)))
 }
 
-/// The same for ranges that are not equally good, each with its weight: a reference variance over its own. The dilution
-/// times the reference standard deviation is that of the position.
+/// The dilution of precision of ranges with different accuracies. Each range has a weight: a reference variance
+/// over its own.
+///
+/// The dilution times the reference standard deviation is the standard deviation of the position.
 ///
 /// # Errors
-/// As [`dilution_of_precision`].
+/// [`Error::TooFewRanges`] or [`Error::DegenerateGeometry`].
 pub fn weighted_dilution<T: Scalar, const D: usize>(
     ranges: impl IntoIterator<Item = ([T; D], T)>,
 ) -> Result<T, Error> {
@@ -30,11 +32,12 @@ pub fn weighted_dilution<T: Scalar, const D: usize>(
     Ok(trace.sqrt())
 }
 
-/// What errors of ranges make of the position that is their least-squares solution, (HᵀWH)⁻¹HᵀW e: the way it is off (m), from
-/// each range's direction towards the tag, its weight, and by what it is too long (m).
+/// The error (m) that range errors cause in the least-squares position, (HᵀWH)⁻¹HᵀW e.
+///
+/// Each range is given by its direction towards the tag, its weight and its error (m, positive if it is too long).
 ///
 /// # Errors
-/// As [`dilution_of_precision`].
+/// [`Error::TooFewRanges`] or [`Error::DegenerateGeometry`].
 pub fn position_error<T: Scalar, const D: usize>(
     ranges: impl IntoIterator<Item = ([T; D], T, T)>,
 ) -> Result<[T; D], Error> {
@@ -42,7 +45,7 @@ pub fn position_error<T: Scalar, const D: usize>(
     Ok(factors.solve(&right_side))
 }
 
-/// The normal equations of ranges, with their directions, weights and errors.
+/// The normal equations of ranges, given by their directions, weights and errors.
 fn equations<T: Scalar, const D: usize>(
     ranges: impl IntoIterator<Item = ([T; D], T, T)>,
 ) -> Result<(Factors<T, D>, [T; D]), Error> {

@@ -1,102 +1,107 @@
-//! Differences of distances from messages that anchors send and a tag only hears.
+//! Differences of distances (TDOA), from messages that anchors send and a tag only receives.
 
 use crate::ticks::light_distance;
 use crate::{ClockOffset, Error, TICKS_PER_SECOND, Timestamp};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// What an anchor says in its message of another's.
+/// An anchor's report, in its own message, of another anchor's message that it received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Heard {
     /// Index of the other anchor.
     pub anchor: usize,
-    /// Number of the message that it heard.
+    /// Sequence number of the message that was heard.
     pub sequence: u8,
-    /// When it received that message, on its own clock; 32 bits will do.
+    /// Time of reception of that message on the reporting anchor's clock; 32 bits suffice.
     pub received: Timestamp,
 }
 
-/// A message of an anchor as a tag received it.
+/// A message of an anchor, as received by a tag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Broadcast<'a> {
-    /// When the tag received it (µs since any moment): tells stamps that look alike after the counter went round.
+    /// Time of reception at the tag (µs from any epoch): distinguishes timestamps that look alike after a counter
+    /// wrap.
     pub time_us: u64,
-    /// Index of the anchor.
+    /// Index of the sending anchor.
     pub anchor: usize,
-    /// Number of the message, which goes round at 256 or earlier.
+    /// Sequence number of the message, which wraps at 256 or earlier.
     pub sequence: u8,
-    /// When the anchor sent it, on its own clock; 32 bits will do.
+    /// Time of transmission on the anchor's clock; 32 bits suffice.
     pub sent: Timestamp,
-    /// When the tag received it, on the tag's clock, 40 bits.
+    /// Time of reception on the tag's clock, 40 bits.
     pub received: Timestamp,
-    /// What the anchor heard of the others before.
+    /// Messages of the other anchors that the sender received before.
     pub heard: &'a [Heard],
 }
 
-/// By how much one anchor is farther from the tag than another.
+/// The difference of a tag's distances to two anchors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Difference<T> {
-    /// Indices of two anchors: the one whose message was received earlier, and the other.
+    /// Indices of the two anchors: first the one whose message was received earlier, then the other.
     pub anchors: [usize; 2],
-    /// Distance to the second less distance to the first, m.
+    /// Distance to the second anchor minus distance to the first, m.
     pub difference: T,
-    /// Its variance, m².
+    /// Variance of the difference, m².
     pub variance: T,
 }
 
-/// Downlink TDOA (Ledergerber, Hamer and D'Andrea 2015, IROS; Crazyflie's TDOA 2 and 3): A anchors at known places send, and
-/// say when they received each other's messages; any number of tags only listen.
+/// Downlink TDOA (Ledergerber, Hamer and D'Andrea 2015, IROS; Crazyflie's TDOA 2 and 3).
 ///
-/// Anchor *n* sends at t, on its clock, and received *r*'s message at s; the tag received both at T and S, on its own. Then
-/// |p − n| − |p − r| = c ((T − S) (1 + o) − (t − s)) − |n − r|, with the rate o of n's clock against the tag's from two of n's
-/// own messages a quarter to half a second apart. Stamps remain integers up to the metres.
+/// A anchors at known positions transmit, and report when they received each other's messages; any number of tags
+/// only listen.
 ///
-/// The messages of all anchors that *n* heard tie its arrival to theirs, and the mean counts: so the anchors' own errors
-/// average, and those of the tag's receptions remain.
+/// Anchor *n* sends at t on its clock and received *r*'s message at s; the tag received the two messages at T and S
+/// on its own clock. Then |p − n| − |p − r| = c ((T − S) (1 + o) − (t − s)) − |n − r|, with the rate o of n's clock
+/// against the tag's from two of n's own messages, a quarter to half a second apart. Timestamps remain integers up
+/// to the conversion to metres.
 ///
-/// What anchors' antennas delay stays in the difference as half of it, each with its sign, as a bias of each anchor does.
+/// The messages of all anchors that *n* heard tie its arrival to theirs, and the mean is taken: the anchors' own
+/// errors average out, and those of the tag's receptions remain.
+///
+/// Half of each anchor's antenna delay remains in the difference, with that anchor's sign, as any bias of an anchor
+/// does.
 #[derive(Clone, Debug)]
 pub struct Downlink<T: Scalar, const A: usize> {
     places: [SVector<T, 3>; A],
-    /// Standard deviations of a reception's stamp, m, at the tag and at an anchor.
+    /// Standard deviations of a reception timestamp, m: the tag's and the anchors'.
     sigmas: [T; 2],
     last: [Option<Track<T>>; A],
-    /// Anchor of the latest message whose arrival is known, from which arrivals count.
+    /// Anchor of the latest message whose arrival is known, relative to which arrivals are counted.
     latest: Option<usize>,
 }
 
-/// What is kept of an anchor.
+/// The state kept per anchor.
 #[derive(Clone, Copy, Debug)]
 struct Track<T> {
     time_us: u64,
     sequence: u8,
     message: Stamps,
-    /// Two earlier messages, by the older of which the clock is measured.
+    /// Two earlier messages; the clock's rate is measured from the older one.
     bases: [Stamps; 2],
-    /// How much later it arrived than the latest message, m, after the time that went by between them: distance and the errors
-    /// of both receptions.
+    /// How much later its message arrived than the latest one, m, beyond the time that passed between the two
+    /// transmissions: the difference of the distances and the errors of both receptions.
     arrival: Option<T>,
 }
 
-/// The same of a new message, and its variance, m².
+/// How much later a new message arrived than the latest one, and the variance of that, m².
 #[derive(Clone, Copy)]
 struct Arrival<T> {
     metres: T,
     variance: T,
 }
 
-/// A message on two clocks.
+/// The timestamps of a message on the sender's and on the receiver's clock.
 #[derive(Clone, Copy, Debug)]
 struct Stamps {
     sent: Timestamp,
     received: Timestamp,
 }
 
-/// What an anchor's clock did against the tag's over an interval of the latter.
+/// The rate of an anchor's clock against the tag's, over an interval (ticks) of the tag's.
 struct Rate {
     offset: ClockOffset,
     ticks: u64,
@@ -106,20 +111,22 @@ const fn ticks(seconds: f64) -> u64 {
     (seconds * TICKS_PER_SECOND) as u64
 }
 
-/// An anchor that was silent for so long is begun anew (µs).
+/// An anchor that was silent for longer than this starts afresh, µs.
 const FORGOTTEN_US: u64 = 1_000_000;
-/// Interval over which a clock is measured at least before it is believed, and at which its base moves on.
+/// Shortest interval over which a clock's rate is measured (`LEAST`), and the spacing of its base messages
+/// (`BASE`), in ticks.
 const LEAST: u64 = ticks(0.05);
 const BASE: u64 = ticks(0.25);
-/// Two messages of which a difference is made are no farther apart.
+/// Longest interval between two messages that form a difference, in ticks.
 const APART: u64 = ticks(0.1);
-/// Clocks of two radios differ by no more, in units of 2⁻⁴⁰: 100 ppm, of which DW1000s allow each other 40.
+/// Largest plausible rate difference of two radios' clocks, in units of 2⁻⁴⁰: 100 ppm; two DW1000s may differ by 40
+/// ppm.
 const LARGEST_OFFSET: i32 = 109_951_163;
-/// Beyond the anchors' own distance, which no difference exceeds, m.
+/// Margin by which a difference may exceed the distance between the anchors, its geometric limit, m.
 const MARGIN: f64 = 1.0;
 
 impl Stamps {
-    /// How the sender's clock went from an earlier message to this one; none if that is too short to say.
+    /// The rate of the sender's clock from an earlier message to this one; `None` if the interval is too short.
     fn rate_since(&self, base: &Self) -> Result<Option<Rate>, Error> {
         let remote = self.received.since(base.received).get();
         if remote < LEAST {
@@ -135,15 +142,16 @@ impl Stamps {
     }
 }
 
-/// By how much an interval of one clock is longer than the same on another, of which 32 bits tell: ± 33 ms.
+/// The excess of an interval on one clock over the same interval on another; 32 bits cover ±33 ms.
 const fn gained(local: u64, remote: u64) -> i32 {
     local.wrapping_sub(remote) as i32
 }
 
 impl<T: Scalar, const A: usize> Downlink<T, A> {
-    /// For anchors at these places, m, before the first message.
+    /// Creates the state before the first message, for anchors at these positions (m).
     ///
-    /// A stamp's standard deviation, m, is that of the tag and that of the anchors, which see each other.
+    /// `tag_sigma` and `anchor_sigma` are the standard deviations (m) of a reception timestamp at the tag and at
+    /// the anchors, which see each other.
     ///
     /// # Errors
     /// [`Error::NotFinite`] or [`Error::NotPositive`].
@@ -158,17 +166,18 @@ impl<T: Scalar, const A: usize> Downlink<T, A> {
         Ok(Self { places, sigmas, last: [None; A], latest: None })
     }
 
-    /// Takes in a message, and makes a difference of it and the last one of another anchor that made one, or could have; none
-    /// while the clock of its sender is not known yet, or where it heard nothing that the tag heard, too.
+    /// Processes a message, and returns the difference between its anchor and that of the latest message with a
+    /// known arrival.
     ///
-    /// Differences follow each other: each begins with the reception that ended the last one, so their errors are not
-    /// independent, which whoever takes them may know.
+    /// `None` while the clock of the sender is not known yet, or if it heard nothing that the tag heard, too.
+    /// Successive differences share receptions: each begins with the reception that ended the previous one, so
+    /// their errors are correlated, which the user of the differences may account for.
     ///
     /// # Errors
-    /// [`Error::NoSuchAnchor`]; [`Error::Repeated`] for a message that is not newer than the last one of its anchor;
-    /// [`Error::ImplausibleClock`] for a clock that goes wrong by more than 100 ppm; [`Error::ImplausibleDifference`] where
-    /// nothing is left but differences that are larger than the anchors' distance. An anchor that begins anew is refused for a
-    /// second.
+    /// [`Error::NoSuchAnchor`]; [`Error::Repeated`] for a message that is not newer than the last one of its
+    /// anchor; [`Error::ImplausibleClock`] for a clock that is off by more than 100 ppm;
+    /// [`Error::ImplausibleDifference`] if all differences exceed the distance between the anchors. An anchor that
+    /// restarts is refused for a second.
     pub fn take(&mut self, message: &Broadcast<'_>) -> Result<Option<Difference<T>>, Error> {
         let stamps = Stamps { sent: message.sent, received: message.received };
         let fresh = self.last.get(message.anchor).ok_or(Error::NoSuchAnchor)?;
@@ -200,7 +209,7 @@ impl<T: Scalar, const A: usize> Downlink<T, A> {
             let anchors = [first, message.anchor];
             Some(Difference { anchors, difference: arrival.metres, variance: arrival.variance })
         });
-        // From now on arrivals count from this one.
+        // From now on arrivals are relative to this message.
         let metres = arrival.map_or(T::ZERO, |arrival| arrival.metres);
         for known in self.last.iter_mut().flatten() {
             known.arrival = known.arrival.map(|arrival| arrival - metres);
@@ -219,7 +228,8 @@ impl<T: Scalar, const A: usize> Downlink<T, A> {
         Some(rate.offset)
     }
 
-    /// How much later a message arrived than the latest one, after the time that went by between them.
+    /// How much later a message arrived than the latest one, beyond the time that passed between their
+    /// transmissions.
     fn arrival(&self, message: &Broadcast<'_>, rate: &Rate) -> Result<Option<Arrival<T>>, Error> {
         let (mut sum, mut count, mut farthest) = (T::ZERO, 0, 0);
         let mut is_implausible = false;
@@ -243,7 +253,8 @@ impl<T: Scalar, const A: usize> Downlink<T, A> {
         Ok(Some(Arrival { metres: sum * share, variance }))
     }
 
-    /// The difference of the distances to the anchor of a message and to one that it heard; none if there is no such place.
+    /// The difference of the distances to the sender of a message and to an anchor that it heard; `None` if it is
+    /// implausible.
     fn between(
         &self,
         message: &Broadcast<'_>,
@@ -259,21 +270,21 @@ impl<T: Scalar, const A: usize> Downlink<T, A> {
         (difference.abs() <= apart + T::from_f64(MARGIN)).then_some(difference)
     }
 
-    /// The message that an anchor heard, if the tag heard it, too, and knows its arrival.
+    /// The message that an anchor heard and its arrival, if the tag heard it, too, and knows its arrival.
     fn heard_too(&self, message: &Broadcast<'_>, heard: &Heard) -> Option<(&Track<T>, T)> {
         let track = self.last.get(heard.anchor)?.as_ref()?;
         let is_same = track.sequence == heard.sequence && is_near(track, message);
         track.arrival.filter(|_| is_same).map(|arrival| (track, arrival))
     }
 
-    /// Whether any arrival is known to which one of this message could be tied.
+    /// Whether an arrival is known to which this message's could be related.
     fn is_known(&self, message: &Broadcast<'_>) -> bool {
         let mut known = self.last.iter().flatten();
         known.any(|track| track.arrival.is_some() && is_near(track, message))
     }
 
-    /// Of two receptions of the tag, the later of which also ends the interval by which its sender's clock is known, and of
-    /// those of anchors that tie them.
+    /// The variance of an arrival: of two receptions at the tag, the later of which also ends the interval over
+    /// which the sender's clock is measured, and of the anchors' receptions that relate them.
     fn variance(&self, remote: u64, rate: &Rate, share: T) -> T {
         let part = T::from_f32(remote as f32 / rate.ticks as f32);
         let rest = T::ONE - part;
@@ -283,7 +294,7 @@ impl<T: Scalar, const A: usize> Downlink<T, A> {
     }
 }
 
-/// Whether a message was received within a tenth of a second before another.
+/// Whether the last message of `track` was received within a tenth of a second before `message`.
 fn is_near<T>(track: &Track<T>, message: &Broadcast<'_>) -> bool {
     is_fresh(track, message.time_us)
         && message.received.since(track.message.received).get() <= APART

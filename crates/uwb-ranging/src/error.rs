@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Reason for which there is no result. Nothing was changed.
+/// The reason why there is no result. The state is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -10,24 +10,24 @@ pub enum Error {
     NotFinite,
     /// A variance is not positive.
     NotPositive,
-    /// Fewer ranges than unknowns.
+    /// There are fewer ranges than unknowns.
     TooFewRanges,
-    /// The anchors stand so that the answer is not determined: in a line, or in a plane where three
-    /// dimensions are asked for.
+    /// The anchors' positions do not determine the answer: they are collinear, or coplanar where three dimensions
+    /// are requested.
     DegenerateGeometry,
-    /// The iterations ran out.
+    /// The iterations did not converge.
     NotConverged,
-    /// An exchange of which all intervals are zero.
+    /// All intervals of an exchange are zero.
     EmptyExchange,
-    /// A table whose entries are not in rising order.
+    /// The entries of a table are not in increasing order.
     UnorderedTable,
-    /// No anchor has this number.
+    /// There is no anchor with this index.
     NoSuchAnchor,
-    /// This message, or a later one of the same anchor, came before.
+    /// This message, or a later one of the same anchor, was processed before.
     Repeated,
-    /// A clock that differs by more than 100 ppm from another is none: an anchor has begun anew.
+    /// Two clocks differ by more than 100 ppm, which no real ones do: an anchor has restarted.
     ImplausibleClock,
-    /// A difference of distances that is larger than the distance between the anchors.
+    /// A difference of distances exceeds the distance between the anchors.
     ImplausibleDifference,
 }
 

@@ -3,12 +3,12 @@ use crate::{Error, Room, Search};
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-/// A range from a place that is known.
+/// A range measured from a known position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Observation<T: Scalar> {
-    /// The anchor's place in the room, m.
+    /// Position of the anchor in the room, m.
     pub anchor: SVector<T, 3>,
     /// The measured distance, m.
     pub range: T,
@@ -16,28 +16,29 @@ pub struct Observation<T: Scalar> {
     pub variance: T,
 }
 
-/// From how many standard deviations on a residual counts less (Huber 1964), for each sign.
+/// Huber's thresholds (1964), in standard deviations, beyond which a residual is down-weighted, one for each sign.
 ///
-/// An obstacle can only lengthen a range: what is too long is doubted sooner than what is too short.
+/// An obstacle can only lengthen a range: ranges that are too long are doubted sooner than ranges that are too
+/// short.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Huber<T> {
-    /// Threshold of residuals that say "too long".
+    /// Threshold of positive residuals: the range is too long.
     pub long: T,
-    /// Threshold of residuals that say "too short".
+    /// Threshold of negative residuals: the range is too short.
     pub short: T,
 }
 
 impl<T: Scalar> Huber<T> {
-    /// The threshold of a residual of this sign.
+    /// The threshold that applies to a residual of this sign.
     #[inline]
     pub fn threshold(&self, residual: T) -> T {
         if residual > T::ZERO { self.long } else { self.short }
     }
 }
 
-/// A position from ranges taken at one time.
+/// A position from simultaneous ranges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -57,40 +58,40 @@ pub struct Fix<T: Scalar, const D: usize> {
     pub common_bias: T,
     /// Variance of the common bias, m².
     pub common_bias_variance: T,
-    /// The weighted squares (Huber's beyond his threshold) that are left: as many as there are ranges
-    /// beyond the unknowns, on average.
+    /// Weighted sum of squared residuals (Huber's cost beyond the threshold): on average, the number of ranges in
+    /// excess of the unknowns.
     pub cost: T,
-    /// Whether another place explains the ranges nearly as well: three anchors, or nearly a line.
+    /// Whether another position explains the ranges nearly as well: with three anchors, or with nearly collinear
+    /// ones.
     pub ambiguous: bool,
 }
 
-/// Weighted nonlinear least squares over ranges: Gauss and Newton's steps from several starts.
+/// Weighted nonlinear least squares over ranges: Gauss-Newton iterations from several starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Solver<T> {
-    /// The tag's height in two dimensions, m.
+    /// The tag's known height if the position has two dimensions, m.
     pub height: T,
-    /// Bounds of the position.
+    /// Bounds of the position, if any.
     pub room: Option<Room<T>>,
-    /// The standard deviation that a bias common to all ranges may have, m: it is estimated if there are
-    /// ranges enough.
+    /// Prior standard deviation of a bias common to all ranges, m; it is estimated if there are enough ranges.
     pub common_bias: Option<T>,
     /// Thresholds of the robust weights, if any.
     pub huber: Option<Huber<T>>,
 }
 
 impl<T: Scalar> Solver<T> {
-    /// A plain solver for a tag at `height`.
+    /// A plain solver for a tag at `height` (m): no room, no common bias, no robust weights.
     pub const fn new(height: T) -> Self {
         Self { height, room: None, common_bias: None, huber: None }
     }
 
-    /// The position that fits best, of those in the room if there is one. [`Search`] looks for it a few steps at a time.
+    /// The best-fitting position, inside the room if one is set. [`Search`] finds it a few steps at a time.
     ///
     /// # Errors
-    /// [`Error::TooFewRanges`], [`Error::NotFinite`] or [`Error::NotPositive`] for what was given;
-    /// [`Error::DegenerateGeometry`] or [`Error::NotConverged`] if no start leads anywhere.
+    /// [`Error::TooFewRanges`], [`Error::NotFinite`] or [`Error::NotPositive`] for invalid observations;
+    /// [`Error::DegenerateGeometry`] or [`Error::NotConverged`] if no start leads to a minimum.
     pub fn solve<const D: usize>(
         &self,
         observations: &[Observation<T>],
@@ -100,7 +101,7 @@ impl<T: Scalar> Solver<T> {
         search.advance(self, observations, usize::MAX)?.copied().ok_or(Error::NotConverged)
     }
 
-    /// Minimum that the steps from one start reach, with weights relative to the variance `scale`.
+    /// The minimum that the iterations from one start reach, with weights relative to the variance `scale` (m²).
     pub(crate) fn descend<const D: usize>(
         &self,
         observations: &[Observation<T>],
@@ -116,7 +117,7 @@ impl<T: Scalar> Solver<T> {
     }
 }
 
-/// The smallest variance, to which all weights are relative.
+/// The smallest variance, to which all weights are relative, after a check of the observations.
 pub(crate) fn least_variance<T: Scalar, const D: usize>(
     observations: &[Observation<T>],
 ) -> Result<T, Error> {

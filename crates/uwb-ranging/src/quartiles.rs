@@ -3,8 +3,8 @@ use kestirim_scalar::Scalar;
 /// Median and quartiles of a stream, in constant memory: the P² algorithm (Jain and Chlamtac 1985) with
 /// its five markers at the minimum, the quartiles and the maximum.
 ///
-/// A tenth of outliers moves the median by a fraction of the spread, however large they are: beyond the
-/// limits it only counts on which side.
+/// A tenth of outliers moves the median by a fraction of the spread, however large they are: values beyond the
+/// limits are clamped to them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -29,7 +29,7 @@ impl<T: Scalar> Quartiles<T> {
         self.count
     }
 
-    /// Takes in a value; one that is not finite is ignored.
+    /// Adds a value; one that is not finite is ignored.
     pub fn add(&mut self, value: T) {
         if !value.is_finite() || self.count == u32::MAX {
             return;
@@ -54,17 +54,18 @@ impl<T: Scalar> Quartiles<T> {
         }
     }
 
-    /// The median; none before the first value.
+    /// The median; `None` before the first value.
     pub fn median(&self) -> Option<T> {
         self.quantile(2)
     }
 
-    /// From the lower to the upper quartile, times 0.7413: the standard deviation of normal values.
+    /// The interquartile range times 0.7413, which is the standard deviation of a normal distribution; `None`
+    /// before the first value.
     pub fn deviation(&self) -> Option<T> {
         Some((self.quantile(3)? - self.quantile(1)?) * T::from_f64(0.7413))
     }
 
-    /// The first values, kept in order.
+    /// Inserts one of the first values in order.
     fn insert(&mut self, value: T) {
         let mut value = value;
         for height in self.heights.iter_mut().take(self.count as usize - 1) {
@@ -79,12 +80,12 @@ impl<T: Scalar> Quartiles<T> {
 
     fn quantile(&self, marker: usize) -> Option<T> {
         let last = self.count.checked_sub(1)?;
-        // Of fewer than five values, the one nearest to the quantile.
+        // With fewer than five values, the one nearest to the quantile.
         let index = if last < 4 { (last as usize * marker + 2) / 4 } else { marker };
         self.heights.get(index).copied()
     }
 
-    /// Moves a marker by one place towards where it belongs.
+    /// Moves a marker by one place towards its desired position.
     fn adjust(&mut self, marker: usize) {
         let (Some(&[below, here, above]), Some(&[low, height, high])) = (
             self.positions.get(marker - 1..).and_then(<[u32]>::first_chunk::<3>),
@@ -92,7 +93,7 @@ impl<T: Scalar> Quartiles<T> {
         ) else {
             return;
         };
-        // Four times the wanted place, 1 + (n − 1)·marker/4.
+        // Four times the desired position, 1 + (n − 1)·marker/4.
         let wanted = 4 + u64::from(self.count - 1) * marker as u64;
         let place = 4 * u64::from(here);
         let up = wanted >= place + 4 && above > here + 1;
@@ -103,7 +104,7 @@ impl<T: Scalar> Quartiles<T> {
         let whole = |n: u32| T::from_micro(n.min(2000) as i32 * 1_000_000);
         let (left, right) = (whole(here - below), whole(above - here));
         let step = if up { T::ONE } else { -T::ONE };
-        // The parabola through the three markers, or a line where it leaves their order.
+        // The parabola through the three markers, or a line where the parabola would break their order.
         let rise = (left + step) * (high - height) / right;
         let fall = (right - step) * (height - low) / left;
         let parabola = height + step * (rise + fall) / (left + right);

@@ -1,21 +1,20 @@
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// Expected range to an anchor at a known place, and its derivatives by the tag's position.
+/// The expected range to an anchor at a known position, and its derivatives with respect to the tag's position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ExpectedRange<T, const D: usize> {
     /// Slant distance from anchor to tag, m (the paper's eq. 10).
     pub distance: T,
-    /// ∂distance/∂position: the first D components of the unit vector from anchor to tag; zero where both
-    /// are at the same place.
+    /// ∂distance/∂position: the first D components of the unit vector from anchor to tag; zero if the two coincide.
     pub direction: [T; D],
 }
 
-/// The distance from an anchor to a tag and its derivatives, in the room's axes (right-handed, z up; m).
+/// The distance from an anchor to a tag and its derivatives, in the room frame (right-handed, z up; m).
 ///
-/// With D = 2 the tag's height is known: it is at `height` in every axis from D on. With D = 3
-/// `height` is not read.
+/// With D = 2 the tag's height is known: every coordinate from D on equals `height`. With D = 3, `height` is not
+/// used.
 #[inline]
 pub fn expected_range<T: Scalar, const D: usize>(
     position: &SVector<T, D>,

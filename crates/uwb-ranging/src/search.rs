@@ -1,4 +1,4 @@
-//! Steps from several starts, as many at a time as there is time for.
+//! A search from several starts that can be spread over several calls.
 
 use crate::descent::{Care, Descent, Noise, Step};
 use crate::least_squares::least_variance;
@@ -6,14 +6,15 @@ use crate::{Error, Fix, Observation, Solver};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// A search for the position that fits ranges best, which can be interrupted after each of Gauss and Newton's steps: a
-/// processor that has no time for all of them between two samples takes a few with each.
+/// A search for the position that fits ranges best, which can be interrupted after each Gauss-Newton step.
 ///
-/// It looks from the same starts as [`Solver::solve`], and no farther than a filter needs to begin: to a centimetre, or a few
-/// where Huber's weights settle slowly, and to the end only from starts that promise more than the best so far. Five to eight
-/// steps in all for ranges that agree in a room, thirty for those that do not.
+/// A processor that has no time for all steps between two samples takes a few with each.
 ///
-/// The ranges are kept by whoever takes the steps: they are the same from the first to the last.
+/// It uses the same starts as [`Solver::solve`], but only the accuracy that a filter needs to begin: a centimetre,
+/// or a few where Huber's weights settle slowly. Starts are only followed to the end if they promise more than the
+/// best so far. Consistent ranges in a room take five to eight steps in all, inconsistent ones thirty.
+///
+/// The caller keeps the ranges, which must be the same from the first step to the last.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -25,21 +26,21 @@ use nalgebra::SVector;
     ))
 )]
 pub struct Search<T: Scalar, const D: usize> {
-    /// That from the last start; none before the first one.
+    /// The iterations from the current start; `None` before the first step from it.
     descent: Option<Descent<T, D>>,
-    /// Number of the next start around the anchors' centre.
+    /// Index of the next start around the anchors' centre.
     next: u8,
     best: Option<Found<T, D>>,
     is_exact: bool,
     failure: Error,
 }
 
-/// Two starts that come so close to each other lead to the same place, m, …
+/// Iterations that come within this distance of an earlier minimum are taken to lead there, m.
 const SAME: f64 = 0.05;
-/// … or roughly, at the first step that is shorter than this.
+/// Distance that replaces `SAME` in a search that is not exact, for steps shorter than this, m.
 const ROUGHLY_SAME: f64 = 0.5;
 
-/// A minimum, and whether it is in the room.
+/// A minimum, and whether it is inside the room.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -56,29 +57,29 @@ struct Found<T: Scalar, const D: usize> {
 }
 
 impl<T: Scalar, const D: usize> Search<T, D> {
-    /// Starts around the centre, and at it: on either side along each axis.
+    /// Number of starts: the centre, and one on either side of it along each axis.
     const STARTS: u8 = 2 * D as u8 + 1;
 
-    /// Before the first step: from `start` (m) if one is given, and then from starts among the anchors.
+    /// The state before the first step: from `start` (m) if one is given, and then from starts among the anchors.
     pub fn new(start: Option<SVector<T, D>>) -> Self {
         let descent = start.map(Descent::from);
         Self { descent, next: 0, best: None, is_exact: false, failure: Error::NotConverged }
     }
 
-    /// The same to the end from every start.
+    /// A search that follows every start to the end.
     pub(crate) fn exact(start: Option<SVector<T, D>>) -> Self {
         Self { is_exact: true, ..Self::new(start) }
     }
 
-    /// Before the first step from this place (m) alone.
+    /// The state before the first step, from this start (m) alone.
     pub fn near(start: SVector<T, D>) -> Self {
         Self { next: Self::STARTS, ..Self::new(Some(start)) }
     }
 
-    /// Takes no more than so many steps. None if there are more to take.
+    /// Takes up to `steps` steps. Returns `None` if more are needed.
     ///
     /// # Errors
-    /// As [`Solver::solve`]; the search is over.
+    /// Those of [`Solver::solve`]; the search is over.
     pub fn advance(
         &mut self,
         solver: &Solver<T>,
@@ -114,7 +115,7 @@ impl<T: Scalar, const D: usize> Search<T, D> {
         Ok(None)
     }
 
-    /// Whether a way leads nowhere that is better than the best so far.
+    /// Whether the current iterations cannot lead to a better minimum than the best so far.
     fn promises_nothing(
         &self,
         solver: &Solver<T>,
@@ -137,10 +138,10 @@ impl<T: Scalar, const D: usize> Search<T, D> {
         moved < near && (is_near || is_worse)
     }
 
-    /// Keeps the better of two fixes: one in the room, and else the one of smaller cost.
+    /// Keeps the better of two fixes: one inside the room, otherwise the one with the smaller cost.
     #[inline(never)]
     fn settle(&mut self, solver: &Solver<T>, mut fix: Fix<T, D>) {
-        // On a rail of fixed point it could not be stored.
+        // A value on a rail of fixed point could not be stored.
         fix.cost = fix.cost.min(T::MAX - T::EPSILON);
         let inside = is_inside(solver, &fix.position);
         let Some(best) = &mut self.best else {
@@ -168,15 +169,15 @@ impl<T: Scalar, const D: usize> Search<T, D> {
 }
 
 impl<T: Scalar, const D: usize> Found<T, D> {
-    /// Whether no other start can do better: the ranges agree to their noise, and there are enough of them
-    /// that a mirror image could not.
+    /// Whether no other start can do better: the residuals are consistent with the noise, and there are enough
+    /// ranges to exclude a mirror image.
     fn is_good_enough(&self, observations: usize) -> bool {
         let most = T::from_micro(observations.min(2000) as i32 * 1_000_000);
         self.inside && observations > D + 1 && self.fix.cost <= most
     }
 }
 
-/// Whether two places are no farther apart, m.
+/// Whether two positions are closer to each other than `metres`.
 fn are_near<T: Scalar, const D: usize>(a: &SVector<T, D>, b: &SVector<T, D>, metres: T) -> bool {
     let mut squares = T::ZERO;
     for axis in 0..D {
@@ -191,7 +192,7 @@ fn is_inside<T: Scalar, const D: usize>(solver: &Solver<T>, position: &SVector<T
     solver.room.is_none_or(|room| room.contains(position, margin))
 }
 
-/// A start: the anchors' centre, or a place on a side of it.
+/// A start: the anchors' centre (index 0), or a point beside it along an axis.
 #[inline(never)]
 fn start_among<T: Scalar, const D: usize>(
     observations: &[Observation<T>],

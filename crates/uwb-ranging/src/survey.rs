@@ -4,43 +4,43 @@ use nalgebra::SVector;
 
 type Place<T> = SVector<T, 2>;
 
-/// Positions of A anchors from the ranges between them.
+/// The positions of A anchors, found from the ranges between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Survey<T: Scalar, const A: usize> {
-    /// Their places in the plane, m: anchor 0 at the origin, anchor 1 on the positive x axis, and the next
-    /// one that is not on it at positive y.
+    /// Positions of the anchors in the plane, m: anchor 0 at the origin, anchor 1 on the positive x axis, and the
+    /// first other one off that axis at positive y.
     pub positions: [Place<T>; A],
-    /// Root mean square of what is left of the ranges, m.
+    /// Root mean square of the range residuals, m.
     pub residual: T,
-    /// Whether another shape fits nearly as well: too many ranges are missing.
+    /// Whether another shape fits nearly as well, because too many ranges are missing.
     pub ambiguous: bool,
 }
 
-/// Sweeps in which places settle, and those after a mirror image has been tried.
+/// Largest number of sweeps of the first solution (`SWEEPS`), and of each trial of an anchor's mirror image.
 const SWEEPS: u16 = 400;
 const SWEEPS_OF_TRIAL: u16 = 200;
-/// A sweep that moves nothing farther ends the search, m.
+/// A sweep that moves no anchor farther than this ends the iteration, m.
 const SETTLED: f64 = 1e-4;
-/// Shapes of which an anchor differs by more are different, m.
+/// Two shapes differ if any of their inner distances differs by more than this, m.
 const DIFFERENT: f64 = 0.3;
-/// Largest difference of two shapes' sums of squares that leaves them undecided, m²: 4.5 times (7 cm)².
+/// Two shapes are indistinguishable if their sums of squares differ by less than this, m²: 4.5 times (7 cm)².
 const ALIKE: f64 = 0.022;
 
-/// Horizontal distances between anchors, as far as they are known.
+/// Horizontal distances between anchors, where known.
 struct Distances<T, const A: usize>([[Option<T>; A]; A]);
 
-/// Surveys the anchors from the ranges between them (`ranges[i][j]`, m; both directions are averaged, those
-/// missing are `None`) and their known heights (m).
+/// Surveys anchors from the ranges between them and their known heights (m).
 ///
-/// Places are found one after the other from circles of those already found, settled by stress
-/// majorisation (de Leeuw 1977: no matrix, and no step makes the fit worse), and every anchor's mirror
-/// image is tried. Four to eight anchors with all ranges to ±5 cm come out to 4 cm; in a hundred random
-/// layouts none was wrong without being called `ambiguous`.
+/// `ranges[i][j]` (m) is the range from anchor i to anchor j; both directions are averaged, and missing ranges are
+/// `None`. Positions are first found one after the other as intersections of circles around those already found,
+/// then refined by stress majorisation (de Leeuw 1977: no matrix, and no step makes the fit worse); finally every
+/// anchor's mirror image is tried. Four to eight anchors with all ranges accurate to ±5 cm are located to 4 cm; in
+/// a hundred random layouts no wrong result was not reported as `ambiguous`.
 ///
 /// # Errors
-/// [`Error::TooFewRanges`] if an anchor cannot be reached from two others, [`Error::NotFinite`], or
-/// [`Error::DegenerateGeometry`] for anchors in one place.
+/// [`Error::TooFewRanges`] if an anchor has ranges to fewer than two others, [`Error::NotFinite`], or
+/// [`Error::DegenerateGeometry`] for coincident anchors.
 pub fn survey<T: Scalar, const A: usize>(
     ranges: &[[Option<T>; A]; A],
     heights: &[T; A],
@@ -98,12 +98,13 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
         *self.0.get(i)?.get(j)?
     }
 
-    /// Every measured pair once.
+    /// Iterates over the measured pairs, each once.
     fn pairs(&self) -> impl Iterator<Item = (usize, usize, T)> {
         (0..A).flat_map(move |i| (0..i).filter_map(move |j| Some((i, j, self.between(i, j)?))))
     }
 
-    /// First places: the longest pair, then the anchor with the most neighbours that are placed.
+    /// Initial positions: the longest pair first, then repeatedly the anchor with the most neighbours already
+    /// placed.
     fn placed(&self) -> Result<[Place<T>; A], Error> {
         let mut places = [None; A];
         let longest = self.pairs().fold(None, |best: Option<(usize, usize, T)>, pair| {
@@ -136,7 +137,7 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
         Ok(all)
     }
 
-    /// The crossing of two circles around placed neighbours that fits the others best.
+    /// The intersection of two circles around placed neighbours that fits the others best.
     fn best_crossing(&self, anchor: usize, places: &[Option<Place<T>>; A]) -> Option<Place<T>> {
         let placed =
             |other: usize| Some((*places.get(other)?.as_ref()?, self.between(anchor, other)?));
@@ -161,7 +162,7 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
         best.map(|(_, place)| place)
     }
 
-    /// Gauss and Seidel's sweeps of xᵢ ← mean of xⱼ + Dᵢⱼ (xᵢ − xⱼ)/|xᵢ − xⱼ|; returns the squares left.
+    /// Gauss-Seidel sweeps of xᵢ ← mean of xⱼ + Dᵢⱼ (xᵢ − xⱼ)/|xᵢ − xⱼ|; returns the remaining sum of squares.
     fn settle(&self, places: &mut [Place<T>; A], sweeps: u16) -> T {
         for _ in 0..sweeps {
             let mut farthest = T::ZERO;
@@ -192,7 +193,7 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
         })
     }
 
-    /// Reflects an anchor in the line that its neighbours lie along; false if it has too few.
+    /// Reflects an anchor in the line along which its neighbours lie; `false` if it has too few.
     fn mirror(&self, places: &mut [Place<T>; A], anchor: usize) -> bool {
         let is_near = |other: usize| self.between(anchor, other).is_some();
         let near = || places.iter().enumerate().filter(|(other, _)| is_near(*other));
@@ -219,7 +220,7 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
     }
 }
 
-/// Whether two shapes differ: by the distances within them, which no gauge changes.
+/// Whether two shapes differ, judged by the distances within them, which do not depend on the frame.
 fn differ<T: Scalar, const A: usize>(a: &[Place<T>; A], b: &[Place<T>; A]) -> bool {
     let apart = |one: &Place<T>, other: &Place<T>| T::norm((one - other).as_array());
     let mut places = a.iter().zip(b).enumerate();
@@ -229,7 +230,7 @@ fn differ<T: Scalar, const A: usize>(a: &[Place<T>; A], b: &[Place<T>; A]) -> bo
     })
 }
 
-/// Points in which two circles (centre, radius) cross, or come nearest; none if they are concentric.
+/// The points in which two circles (centre, radius) intersect or come nearest; `None` if they are concentric.
 fn crossings<T: Scalar>(a: (Place<T>, T), b: (Place<T>, T)) -> Option<[Place<T>; 2]> {
     let apart = b.0 - a.0;
     let length = T::norm(apart.as_array());
@@ -245,7 +246,8 @@ fn crossings<T: Scalar>(a: (Place<T>, T), b: (Place<T>, T)) -> Option<[Place<T>;
     Some([foot + aside, foot - aside])
 }
 
-/// The shape with anchor 0 at the origin, anchor 1 on the positive x axis, the next beside it above.
+/// The shape with anchor 0 at the origin, anchor 1 on the positive x axis and the next one off that axis at
+/// positive y.
 fn turned<T: Scalar, const A: usize>(places: &[Place<T>; A]) -> Option<[Place<T>; A]> {
     let (origin, first) = (*places.first()?, *places.get(1)?);
     let axis = first - origin;

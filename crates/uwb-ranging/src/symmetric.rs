@@ -2,7 +2,7 @@
 
 use kestirim_scalar::Scalar;
 
-/// A pivot that is no more than this share of the largest diagonal element: as good as singular.
+/// Pivots no larger than this share of the largest diagonal element make the system count as singular.
 const LEAST_PIVOT: f64 = 1e-4;
 
 /// Normal equations A x = b of M unknowns; only the lower triangle of A is read.
@@ -13,7 +13,7 @@ pub(crate) struct NormalEquations<T, const M: usize> {
 }
 
 impl<T: Scalar, const M: usize> NormalEquations<T, M> {
-    /// No equation yet.
+    /// A system without equations.
     pub(crate) fn new() -> Self {
         Self { a: [[T::ZERO; M]; M], b: [T::ZERO; M] }
     }
@@ -29,17 +29,17 @@ impl<T: Scalar, const M: usize> NormalEquations<T, M> {
         }
     }
 
-    /// The smallest pivot with which the equations still say something of every unknown.
+    /// The smallest pivot with which the equations still determine every unknown.
     pub(crate) fn least_pivot(&self) -> T {
         (0..M).fold(T::ZERO, |most, i| most.max(self.a[i][i])) * T::from_f64(LEAST_PIVOT)
     }
 
-    /// A = L D Lᵀ, unless A is as good as singular.
+    /// The factors A = L D Lᵀ, or `None` if A is nearly singular.
     pub(crate) fn factorised(&self) -> Option<Factors<T, M>> {
         self.factorised_above(self.least_pivot())
     }
 
-    /// A = L D Lᵀ, unless a pivot is not above `least`.
+    /// The factors A = L D Lᵀ, or `None` if a pivot is not above `least`.
     pub(crate) fn factorised_above(&self, least: T) -> Option<Factors<T, M>> {
         let (mut l, mut d) = (self.a, [T::ONE; M]);
         for i in 0..M {
@@ -54,7 +54,7 @@ impl<T: Scalar, const M: usize> NormalEquations<T, M> {
             for k in 0..i {
                 pivot -= l[i][k] * l[i][k] * d[k];
             }
-            // A NaN is not above it either.
+            // A NaN fails this comparison, too.
             if !(pivot > least && pivot.is_finite()) {
                 return None;
             }
@@ -64,14 +64,14 @@ impl<T: Scalar, const M: usize> NormalEquations<T, M> {
     }
 }
 
-/// L D Lᵀ.
+/// The factors of A = L D Lᵀ.
 pub(crate) struct Factors<T, const M: usize> {
     l: [[T; M]; M],
     d: [T; M],
 }
 
 impl<T: Scalar, const M: usize> Factors<T, M> {
-    /// A⁻¹ b.
+    /// The solution A⁻¹ b.
     pub(crate) fn solve(&self, b: &[T; M]) -> [T; M] {
         let mut x = [T::ZERO; M];
         for i in 0..M {
@@ -91,7 +91,7 @@ impl<T: Scalar, const M: usize> Factors<T, M> {
         x
     }
 
-    /// A⁻¹.
+    /// The inverse A⁻¹.
     pub(crate) fn inverse(&self) -> [[T; M]; M] {
         let mut inverse = [[T::ZERO; M]; M];
         for i in 0..M {

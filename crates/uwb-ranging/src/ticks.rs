@@ -6,8 +6,8 @@ use kestirim_scalar::Scalar;
 const METRES: i128 = 149_896_229;
 const TICKS: i128 = 31_948_800_000;
 
-/// The distance light travels in `numerator / denominator` ticks (m), within 2·10⁻⁷ of itself and 10⁻⁷ m
-/// or the scalar's own rounding.
+/// The distance that light travels in `numerator / denominator` ticks (m), with an error of 2·10⁻⁷ of itself plus
+/// 10⁻⁷ m, or the scalar's own rounding.
 ///
 /// `|numerator|` up to 2⁹⁸ and `denominator` from 1 to 2⁹⁰. The quotient is found in two single-precision
 /// steps with an exact remainder in between: 48 bits without a wide division and without double precision.

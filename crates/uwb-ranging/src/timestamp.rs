@@ -1,7 +1,7 @@
 //! The counter of the DW1000 and differences of its readings.
 
-/// The speed of light in vacuum (m/s), exact. In air it is 0.03 % less: 2 cm at 60 m, which calibration at known
-/// points takes out along with the rest.
+/// The speed of light in vacuum (m/s), exact. In air it is 0.03 % less: 2 cm at 60 m, which a calibration at known
+/// points absorbs.
 pub const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 /// The frequency of the counter (Hz): 128 · 499.2 MHz (DW1000 user manual, 4.1.6 and 7.2.8).
 pub const TICKS_PER_SECOND: f64 = 128.0 * 499.2e6;
@@ -17,13 +17,14 @@ const MASK: u64 = (1 << 40) - 1;
 pub struct Timestamp(u64);
 
 impl Timestamp {
-    /// From a counter value, of which the lower 40 bits count.
+    /// Creates a timestamp from a counter value, of which the lower 40 bits are used.
     #[inline]
     pub const fn new(ticks: u64) -> Self {
         Self(ticks & MASK)
     }
 
-    /// From the bytes of the registers `RX_STAMP` and `TX_STAMP` or of a message field, least significant first.
+    /// Creates a timestamp from the bytes of the registers `RX_STAMP` and `TX_STAMP` or of a message field, least
+    /// significant first.
     #[inline]
     pub const fn from_le_bytes([a, b, c, d, e]: [u8; 5]) -> Self {
         Self(u64::from_le_bytes([a, b, c, d, e, 0, 0, 0]))
@@ -42,13 +43,13 @@ impl Timestamp {
         self.0 & MASK
     }
 
-    /// The interval from `earlier`, a reading of the same counter less than 17.2 s ago: right across a wrap.
+    /// The interval since `earlier`, a reading of the same counter less than 17.2 s ago; correct across a wrap.
     #[inline]
     pub const fn since(self, earlier: Self) -> Ticks {
         Ticks::new(self.0.wrapping_sub(earlier.0))
     }
 
-    /// The reading `interval` later: what a delayed transmission is to be stamped with.
+    /// The reading `interval` later, such as the timestamp of a delayed transmission.
     #[inline]
     pub const fn after(self, interval: Ticks) -> Self {
         Self::new(self.0.wrapping_add(interval.0))
@@ -62,7 +63,7 @@ impl Timestamp {
 pub struct Ticks(u64);
 
 impl Ticks {
-    /// From a count, of which the lower 40 bits count.
+    /// Creates an interval from a count of ticks, of which the lower 40 bits are used.
     #[inline]
     pub const fn new(ticks: u64) -> Self {
         Self(ticks & MASK)
@@ -74,7 +75,7 @@ impl Ticks {
         self.0 & MASK
     }
 
-    /// The count with a sign, for differences; exact.
+    /// The count as a signed number, for exact differences.
     #[inline]
     pub(crate) const fn signed(self) -> i64 {
         (self.0 & MASK) as i64

@@ -3,11 +3,12 @@ use crate::{Error, Observation};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// Linear trilateration (the paper's eqs 3–7): the first anchor's sphere subtracted from the others', and
-/// the pseudo-inverse, which depends on the anchors alone, computed once.
+/// Linear trilateration (the paper's eqs 3–7): the first anchor's sphere is subtracted from the others', and the
+/// pseudo-inverse, which depends on the anchors alone, is computed once.
 ///
-/// With D = 2 the tag is at a known height. Noise of the first anchor enters every equation, and there is
-/// no weighting: [`Solver`](crate::Solver) is better by a tenth to a third; this is faster, and a start.
+/// With D = 2 the tag is at a known height. Noise of the first anchor enters every equation, and there is no
+/// weighting: [`Solver`](crate::Solver) is more accurate by a tenth to a third; this is faster, and provides a
+/// start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Trilateration<T: Scalar, const A: usize, const D: usize> {
@@ -17,11 +18,11 @@ pub struct Trilateration<T: Scalar, const A: usize, const D: usize> {
 }
 
 impl<T: Scalar, const A: usize, const D: usize> Trilateration<T, A, D> {
-    /// Prepares for anchors at these places (room axes, m).
+    /// Precomputes the pseudo-inverse for anchors at these positions (room frame, m).
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::TooFewRanges`] for fewer than D + 1 anchors, or
-    /// [`Error::DegenerateGeometry`] if they stand in a line (D = 2) or a plane (D = 3).
+    /// [`Error::NotFinite`], [`Error::TooFewRanges`] for fewer than D + 1 anchors, or [`Error::DegenerateGeometry`]
+    /// if they are collinear (D = 2) or coplanar (D = 3).
     pub fn new(anchors: [SVector<T, 3>; A]) -> Result<Self, Error> {
         const { assert!(0 < D && D <= 3, "a position has up to three coordinates") };
         let Some(&first) = anchors.first().filter(|_| A > D) else {
@@ -45,7 +46,7 @@ impl<T: Scalar, const A: usize, const D: usize> Trilateration<T, A, D> {
         Ok(Self { anchors, pseudo_inverse })
     }
 
-    /// Position of the tag (m) with these ranges (m); `height` (m) is not read in three dimensions.
+    /// The tag's position (m) from these ranges (m); `height` (m) is not used in three dimensions.
     ///
     /// # Errors
     /// [`Error::NotFinite`].
@@ -66,11 +67,11 @@ impl<T: Scalar, const A: usize, const D: usize> Trilateration<T, A, D> {
     }
 }
 
-/// [`Trilateration`] among anchors of which it is known only now which are heard, so that nothing can be
-/// prepared; variances are not read.
+/// Linear trilateration as by [`Trilateration`], for a set of anchors that is not known in advance, so that nothing
+/// can be precomputed. Variances are not used.
 ///
 /// # Errors
-/// As [`Trilateration::new`] and [`Trilateration::position`].
+/// Those of [`Trilateration::new`] and [`Trilateration::position`].
 pub fn trilaterate<T: Scalar, const D: usize>(
     observations: &[Observation<T>],
     height: T,
@@ -100,8 +101,8 @@ pub fn trilaterate<T: Scalar, const D: usize>(
     if finite { Ok(position) } else { Err(Error::NotFinite) }
 }
 
-/// Half of d₀² − dᵢ² + |aᵢ − a₀|², relative to a₀ and without what the known height makes of it. Products of
-/// differences: squares of tens of metres would leave the range of fixed point.
+/// Half of d₀² − dᵢ² + |aᵢ − a₀|², relative to a₀ and without the contribution of the known height. Computed from
+/// products of differences: squares of tens of metres would leave the range of fixed point.
 #[inline(always)]
 fn right_side<T: Scalar, const D: usize>(
     (first, first_range): (&SVector<T, 3>, T),
@@ -120,7 +121,7 @@ fn right_side<T: Scalar, const D: usize>(
     sum * T::HALF
 }
 
-/// aᵢ − a₀, half of the paper's row: the other half stands on the right.
+/// aᵢ − a₀, half of the paper's row: the factor of two is moved to the right side.
 fn row<T: Scalar, const D: usize>(anchor: &SVector<T, 3>, first: &SVector<T, 3>) -> [T; D] {
     core::array::from_fn(|axis| anchor.as_array()[axis] - first.as_array()[axis])
 }

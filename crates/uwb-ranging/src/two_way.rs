@@ -16,7 +16,7 @@ pub struct SingleSided {
 }
 
 impl SingleSided {
-    /// From the four timestamps: poll sent and received, response sent and received.
+    /// Creates an exchange from its four timestamps: poll sent and received, response sent and received.
     pub const fn new(
         poll_sent: Timestamp,
         poll_received: Timestamp,
@@ -29,10 +29,11 @@ impl SingleSided {
         }
     }
 
-    /// The distance (m): c·(R − D·(1 + offset))/2, the reply D brought to the initiator's clock.
+    /// The distance (m): c·(R − D·(1 + offset))/2, with the reply time D converted to the initiator's clock.
     ///
     /// Equation (2) of the paper is misprinted; this is what its text describes. Without the offset
-    /// ([`ClockOffset::ZERO`]) 20 ppm make 3 m of a millisecond. A negative distance is reported as it is.
+    /// ([`ClockOffset::ZERO`]), 20 ppm cause an error of 3 m per millisecond of reply time. Negative distances are
+    /// returned unchanged.
     pub fn distance<T: Scalar>(&self, offset: ClockOffset) -> T {
         let (round, reply) = (self.round.signed(), self.reply.signed());
         let difference = i128::from(round.wrapping_sub(reply)) << ClockOffset::FRACTION;
@@ -41,7 +42,7 @@ impl SingleSided {
     }
 }
 
-/// A poll, a response and a final message: both sides measure a round trip and a reply time.
+/// A poll, a response and a final message: each side measures a round trip and a reply time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -57,7 +58,7 @@ pub struct DoubleSided {
 }
 
 impl DoubleSided {
-    /// From the six timestamps: poll, response and final message, each sent and received.
+    /// Creates an exchange from its six timestamps: poll, response and final message, each sent and received.
     pub const fn new(
         poll_sent: Timestamp,
         poll_received: Timestamp,
@@ -74,14 +75,14 @@ impl DoubleSided {
         }
     }
 
-    /// The distance (m): c·(R₁R₂ − D₁D₂)/(R₁ + R₂ + D₁ + D₂), with reply times of any lengths (DW1000 user
-    /// manual, 12.3.2; equation (2) of the paper is a misprint of it).
+    /// The distance (m): c·(R₁R₂ − D₁D₂)/(R₁ + R₂ + D₁ + D₂), for reply times of any lengths (DW1000 user manual,
+    /// 12.3.2; equation (2) of the paper is a misprint of it).
     ///
-    /// Clock offsets cancel but for 20 ppm of the distance itself. The numerator is exact, as
-    /// (R₁ − D₁)·R₂ + D₁·(R₂ − D₂). A negative distance is reported as it is.
+    /// Clock offsets cancel except for 20 ppm of the distance itself. The numerator is exact, as (R₁ − D₁)·R₂ +
+    /// D₁·(R₂ − D₂). Negative distances are returned unchanged.
     ///
     /// # Errors
-    /// [`Error::EmptyExchange`] where all intervals are zero.
+    /// [`Error::EmptyExchange`] if all intervals are zero.
     pub fn asymmetric<T: Scalar>(&self) -> Result<T, Error> {
         let [round1, reply1, round2, reply2] = self.signed();
         let product = |a: i64, b: i64| i128::from(a).wrapping_mul(i128::from(b));
@@ -94,19 +95,19 @@ impl DoubleSided {
         Ok(light_distance(numerator, i128::from(sum)))
     }
 
-    /// The distance (m): c·(R₁ − D₁ + R₂ − D₂)/4, for EQUAL reply times only: 20 ppm of their difference
-    /// remain, 1.5 m for a millisecond. A negative distance is reported as it is.
+    /// The distance (m): c·(R₁ − D₁ + R₂ − D₂)/4, for EQUAL reply times only: 20 ppm of their difference remain,
+    /// 1.5 m per millisecond. Negative distances are returned unchanged.
     pub fn symmetric<T: Scalar>(&self) -> T {
         let [round1, reply1, round2, reply2] = self.signed();
         let difference = round1.wrapping_sub(reply1).wrapping_add(round2.wrapping_sub(reply2));
         light_distance(i128::from(difference), 4)
     }
 
-    /// Offset of the initiator's clock from the responder's in this exchange: the times from the
-    /// first departure to the last, and from the first arrival to the last, are equal.
+    /// Offset of the initiator's clock from the responder's during this exchange: the times from the first
+    /// departure to the last, and from the first arrival to the last, are equal.
     ///
     /// # Errors
-    /// [`Error::EmptyExchange`] where the responder's intervals are zero.
+    /// [`Error::EmptyExchange`] if the responder's intervals are zero.
     pub fn clock_offset(&self) -> Result<ClockOffset, Error> {
         let [round1, reply1, round2, reply2] = self.signed();
         ClockOffset::between(round1.wrapping_add(reply2), reply1.wrapping_add(round2))

@@ -4,47 +4,48 @@ use kestirim_scalar::{Components, Scalar};
 use kestirim_uwb_ranging::{Huber, Room};
 use nalgebra::SVector;
 
-/// Settings of a tracker: its radio, and what carries the tag.
+/// Settings of a tracker, which depend on its radio and on what carries the tag.
 ///
-/// Lengths are those of an office, with no more than 6 m from the anchors to their centre on average. Among anchors farther
-/// apart a tracker lets the deviations, the variances that may be learnt and the density of the acceleration grow in
-/// proportion.
+/// Lengths apply to an office, with a mean distance of at most 6 m from the anchors to their centre. Among anchors
+/// farther apart, a tracker scales the standard deviations, the limits of learnt variances and the acceleration
+/// density in proportion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config<T> {
-    /// Standard deviation of a range to begin with, m.
+    /// Initial standard deviation of a range, m.
     pub range_sigma: T,
     /// Learning of each anchor's variance (m²), if any.
     pub learning: Option<Learning<T>>,
     /// Thresholds of the robust weights of ranges, if any.
     pub huber: Option<Huber<T>>,
-    /// The NIS above which a range is left out, if any is.
+    /// NIS above which a range is rejected, if any.
     pub gate: Option<T>,
-    /// Power spectral density of the acceleration, m²/s³, of a tag that goes at 1.2 m/s or less.
+    /// Power spectral density of the acceleration, m²/s³, for a tag that moves at 1.2 m/s or less.
     pub acceleration_density: T,
-    /// Time constant with which a velocity decays, s; none: it does not.
+    /// Time constant with which a velocity decays, s; `None` for no decay.
     pub decay_time: Option<T>,
     /// Standard deviation of the bias common to all ranges, m, for trackers that estimate it.
     pub common_bias_sigma: T,
-    /// Standard deviation of the constant error that each anchor's ranges keep, m. It is considered, not estimated
-    /// (Schmidt 1966): the filter takes ranges' errors for noise, which an average makes small, so
-    /// [`Health::position_sigma`](crate::Health::position_sigma) adds what these do to the position. Where the tag stands,
-    /// each link is given as much again.
+    /// Standard deviation of the constant error of each anchor's ranges, m. It is considered, not estimated (Schmidt
+    /// 1966): the filter treats range errors as noise, which averages out, so
+    /// [`Health::position_sigma`](crate::Health::position_sigma) adds the effect of these constants on the position.
+    /// While the tag stands, each link gets as much again.
     pub bias_sigma: T,
-    /// Height of the tag in two dimensions, m.
+    /// Height of the tag, m, for a position in two dimensions.
     pub height: T,
     /// Bounds of the position.
     pub room: Option<Room<T>>,
 }
 
-/// From the centre of an office to its anchors, m.
+/// Mean distance from the centre of an office to its anchors, m.
 pub(crate) const OFFICE: f64 = 6.0;
 
-/// How much larger the anchors' place is than an office: 1 up to 6 m from their centre to each, on average.
+/// Size of the anchors' area relative to an office: 1 for a mean distance of up to 6 m from the anchors to their
+/// centre.
 ///
-/// A radio's excess grows with the distance, and so does what it leaves uncertain: the constants that are lengths are
-/// those of an office, and grow with this.
+/// A radio's excess grows with the distance, and so does its uncertainty: constants that are lengths are given for an
+/// office, and are multiplied by this.
 pub(crate) fn size<T: Scalar>(anchors: &[Anchor<T>]) -> T {
     let share = T::from_micro(anchors.len().clamp(1, 2000) as i32 * 1_000_000).recip();
     let mut centre = SVector::<T, 3>::zeros();
@@ -55,43 +56,43 @@ pub(crate) fn size<T: Scalar>(anchors: &[Anchor<T>]) -> T {
     for anchor in anchors {
         reach += T::norm((anchor.position - centre).as_array()) * share;
     }
-    // Of anchors that are refused anyway it may be anything.
+    // Irrelevant for anchors that are refused anyway.
     (reach * T::from_f64(1.0 / OFFICE)).clamp(T::ONE, T::from_f64(30.0))
 }
 
-/// How the common bias depends on the distance: 1 in an office; and of what a place of this [`size`] is beyond it, in
-/// proportion (1/m).
+/// The dependence of the common bias on the distance, as a constant and a slope (1/m): 1 in an office, and in an area
+/// of a larger [`size`] proportional to the distance for the part beyond an office.
 pub(crate) fn bias_shape<T: Scalar>(size: T) -> [T; 2] {
     let constant = size.recip();
     [constant, (T::ONE - constant) * constant * T::from_f64(1.0 / OFFICE)]
 }
 
-/// Excess in 10 m by common bias: of an office 6 m wide, both are the same …
+/// Ratio of the excess in 10 m to the common bias: in an office 6 m wide both are equal.
 const EXCESS_BY_BIAS: f64 = 10.0 / OFFICE;
-/// … but there they cannot be told apart, and so hardly any is expected: a share of that.
+/// Smallest share of the excess that is expected: in an office, excess and common bias cannot be distinguished.
 const LEAST_EXCESS: f64 = 0.1;
 
-/// Standard deviations of what all ranges are too long by, of that in an office, and of by what more in 10 m of distance,
-/// which makes what a place of this [`size`] is beyond that, m.
+/// Standard deviations (m) of the common bias, which is `bias` in an office, and of the additional excess in 10 m of
+/// distance, which accounts for the part of an area's [`size`] beyond an office.
 pub(crate) fn common_sigmas<T: Scalar>(bias: T, size: T) -> [T; 2] {
     let beyond = (T::ONE - size.recip()).max(T::from_f64(LEAST_EXCESS));
     [bias, bias * T::from_f64(EXCESS_BY_BIAS) * beyond]
 }
 
 impl<T: Scalar> Config<T> {
-    /// What a tracker makes of it among these anchors: lengths in proportion to those of an office.
+    /// The configuration as a tracker scales it for these anchors: lengths in proportion to those of an office.
     #[must_use]
     pub fn of_place(self, anchors: &[Anchor<T>]) -> Self {
         self.scaled(size(anchors))
     }
 
-    /// Standard deviations, among these anchors, of what all ranges are too long by, m, and of by what more in 10 m of
+    /// Standard deviations, among these anchors, of the common bias, m, and of the additional excess in 10 m of
     /// distance, m.
     pub fn common_sigmas(&self, anchors: &[Anchor<T>]) -> [T; 2] {
         common_sigmas(self.common_bias_sigma, size(anchors))
     }
 
-    /// The same for anchors of this [`size`].
+    /// The configuration scaled for an area of this [`size`].
     pub(crate) fn scaled(self, size: T) -> Self {
         Self {
             range_sigma: self.range_sigma * size,
@@ -103,19 +104,19 @@ impl<T: Scalar> Config<T> {
         }
     }
 
-    /// For anchors whose biases are known: a variance may fall to (5 cm)².
+    /// For anchors with known biases: learnt variances may fall to (5 cm)².
     #[inline]
     pub fn calibrated(height: T) -> Self {
         Self::robust(height, 0.05)
     }
 
-    /// For anchors as they come, with biases of a decimetre or two: no variance falls below (10 cm)².
+    /// For uncalibrated anchors, with biases of a decimetre or two: no learnt variance falls below (10 cm)².
     #[inline]
     pub fn uncalibrated(height: T) -> Self {
         Self::robust(height, 0.1)
     }
 
-    /// The textbook's extended Kalman filter: all ranges have the same variance and are taken in.
+    /// The textbook's extended Kalman filter: all ranges have the same variance, and none is rejected.
     #[inline]
     pub fn plain(height: T) -> Self {
         Self {
@@ -132,8 +133,8 @@ impl<T: Scalar> Config<T> {
         }
     }
 
-    /// Constants for real rooms. They are physical, and broad in their effect: the book has the
-    /// table of what half and twice of each does to every recording.
+    /// Constants for real rooms. They are physical, and not critical: the book has a table of the effect of half and
+    /// twice of each on every recording.
     #[inline(always)] // So that the constants fold.
     fn robust(height: T, least_sigma: f64) -> Self {
         let number = T::from_f64;
@@ -154,7 +155,7 @@ impl<T: Scalar> Config<T> {
 mod tests {
     use super::*;
 
-    /// Anchors on the four sides of a place, so far from its centre, which is not the origin.
+    /// Anchors on the four sides of an area, at this distance from its centre, which is not the origin.
     fn place(reach: f64) -> [Anchor<f64>; 4] {
         [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].map(|[x, y]| Anchor {
             position: SVector::from([50.0 + reach * x, -20.0 + reach * y, 2.0]),
@@ -189,7 +190,7 @@ mod tests {
         assert_eq!(size::<f64>(&[]), 1.0);
         assert_eq!(size(&place(0.0)), 1.0);
         assert_eq!(size(&place(1e6)), 30.0);
-        // One anchor farther away, and with it the centre by half a metre.
+        // One anchor is farther away, which moves the centre by half a metre.
         let mut anchors = place(6.0);
         anchors[0].position[0] += 2.0;
         let reach = (7.5 + 6.5 + 2.0 * 0.5_f64.hypot(6.0)) / 4.0;
@@ -201,7 +202,7 @@ mod tests {
         for size in [1.0, 2.0, 5.0, 30.0] {
             let [constant, slope] = bias_shape(size);
             assert!((constant + slope * OFFICE * size - 1.0).abs() < 1e-6, "{size}");
-            // And near an anchor it is an office's.
+            // Near an anchor, the bias is that of an office.
             assert!((constant * size - 1.0).abs() < 1e-6, "{size}");
         }
     }
@@ -209,7 +210,7 @@ mod tests {
     #[test]
     fn excess_is_what_a_place_is_beyond_an_office() {
         let config = Config::uncalibrated(1.0);
-        // All of it, 30 cm in 6 m, would be 50 cm in 10 m: of an office a tenth, of twice its size half.
+        // All of it, 30 cm in 6 m, would be 50 cm in 10 m: a tenth of that in an office, half in twice its size.
         for (reach, excess) in [(6.0, 0.05), (12.0, 0.25), (24.0, 0.375)] {
             let [common, found] = config.common_sigmas(&place(reach));
             assert!((common - 0.3).abs() < 1e-6, "{reach} m: {common}");

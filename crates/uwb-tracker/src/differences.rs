@@ -1,4 +1,4 @@
-//! A tag that only listens.
+//! Tracking of a tag that only listens.
 
 use crate::config::{OFFICE, size};
 use crate::health::Common;
@@ -12,40 +12,43 @@ use kestirim_scalar::{Components, Scalar};
 use kestirim_uwb_ranging::{dilution_of_precision, expected_range};
 use nalgebra::SVector;
 
-/// Position, velocity and clock of a tag, from differences of its distances to up to A anchors (TDOA, downlink or uplink).
+/// Tracks position, velocity and clock of a tag from differences of its distances to up to A anchors (TDOA, downlink
+/// or uplink).
 ///
-/// A difference is two arrivals, whose errors are independent, with a clock between them. So the tracker keeps the
-/// arrivals: distance and clock of the anchor that came last, to which the difference to the next one is added, and its
-/// states are D coordinates (m), their velocities (m/s) and that clock (m), N = 2 D + 1. Differences that follow each other
-/// have a reception in common, and are not independent: taken as if they were, they would give positions that err
-/// more than they need, and deviations that are too small. As each arrival belongs to one anchor,
-/// each has its noise, gate and bias as in a [`Tracker`], and an obstacle can only make it later.
+/// A difference consists of two arrivals with independent errors, and a clock between them. Therefore the tracker
+/// keeps arrivals: the distance and the clock of the latest anchor, to which the difference to the next one is added.
+/// Its states are D coordinates (m), their velocities (m/s) and that clock (m), N = 2 D + 1. Successive differences
+/// share a reception, and are not independent: treated as if they were, they would give positions with larger errors
+/// than necessary, and standard deviations that are too small. As each arrival belongs to one anchor, each has its
+/// noise, gate and bias as in a [`Tracker`], and an obstacle can only delay it.
 ///
-/// A difference that does not continue another begins with a clock of which nothing is known.
+/// A difference that does not continue another one starts with an unknown clock.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DifferenceTracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     tracker: Tracker<T, D, N, A>,
-    /// The second anchor of the last difference, and whether its arrival was taken in.
+    /// The second anchor of the last difference, and whether its arrival was used.
     last: Option<(usize, bool)>,
-    /// From the anchors' centre to them on average, or that of an office, m.
+    /// Mean distance from the anchors' centre to the anchors, at least that of an office, m.
     reach: T,
 }
 
-/// Standard deviation of what anchors tell of each other's messages, m: the clock's walk from one difference to the next.
+/// Standard deviation of the anchors' receptions of each other, m: the random walk of the clock between two
+/// differences.
 const LINK_SIGMA: f64 = 0.02;
-/// Standard deviation of a clock of which nothing is known, m: what it may have gone astray in the time without a link does not
-/// matter, because its zero is then chosen anew.
+/// Standard deviation of an unknown clock, m: its drift during the time without a link does not matter, because its
+/// zero is then chosen anew.
 const CLOCK_SIGMA: f64 = 3.0;
-/// A clock that is farther from zero is set back, m, so that fixed point has room.
+/// Clock value beyond which it is set back to zero, m, so that fixed point has room.
 const FARTHEST: f64 = 8.0;
-/// A reception continues another difference for so long (µs), …
+/// Longest time for which a reception continues the last difference, µs.
 const CHAINED_US: u64 = 100_000;
-/// … or one that was not the last, which the anchor's next message may have followed since.
+/// Longest time for which a reception that did not end the last difference is used, µs: the anchor may have sent
+/// another message since.
 const REMEMBERED_US: u64 = 20_000;
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracker<T, D, N, A> {
-    /// A tracker for these anchors, before its first position.
+    /// Creates a tracker for these anchors, before its first position.
     ///
     /// # Errors
     /// [`Error::TooManyAnchors`] or [`Error::NotFinite`].
@@ -55,12 +58,12 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         tracker.bias_shape = [T::ONE, T::ZERO];
         let reach = size(anchors) * T::from_f64(OFFICE);
         tracker.config.common_bias_sigma = reach + reach;
-        // Two places are looked for among ranges alone.
+        // Mirror images are only considered with ranges.
         tracker.flat = None;
         Ok(Self { tracker, last: None, reach })
     }
 
-    /// Position of the tag, m; none before the first one, or when it is lost.
+    /// Position of the tag, m; `None` before the first one, or when it is lost.
     pub fn position(&self) -> Option<SVector<T, D>> {
         self.tracker.position()
     }
@@ -70,12 +73,12 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         self.tracker.velocity()
     }
 
-    /// Mean and covariance of all states.
+    /// Mean and covariance of all states; `None` without a position.
     pub fn estimate(&self) -> Option<&Gaussian<T, N>> {
         self.tracker.estimate()
     }
 
-    /// Sets the tag's height in two dimensions, m.
+    /// Sets the height of the tag, m, for a position in two dimensions.
     ///
     /// # Errors
     /// [`Error::NotFinite`].
@@ -83,11 +86,11 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         self.tracker.set_height(height)
     }
 
-    /// Takes in a difference. The report is that of the second anchor's arrival.
+    /// Processes a difference. The report is that of the second anchor's arrival.
     ///
     /// # Errors
-    /// [`Error::NoSuchAnchor`], also where both are the same; [`Error::NotFinite`], [`Error::ImplausibleRange`] beyond
-    /// 200 m, [`Error::Duplicate`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the tracker is as it was.
+    /// [`Error::NoSuchAnchor`], also if both anchors are the same; [`Error::NotFinite`], [`Error::ImplausibleRange`]
+    /// beyond 200 m, [`Error::Duplicate`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the tracker is unchanged.
     pub fn difference(&mut self, sample: &DifferenceSample<T>) -> Result<Report<T>, Error> {
         let difference = self.admit(sample)?;
         let time_us = sample.time_us.max(self.tracker.time_us);
@@ -105,20 +108,20 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         match report {
             Err(_) => self.tracker.restore(before.0),
             Ok(_) if self.tracker.is_located() => self.set_back(),
-            // It was given up just now: what was measured belongs to no clock any more.
+            // The position was just given up: the arrivals no longer belong to a clock.
             Ok(Report { outcome: Outcome::Rejected, .. }) => self.forget(),
             Ok(_) => {}
         }
         report
     }
 
-    /// Health of the tracker at `time_us`. The dilution is that of differences.
+    /// Health of the tracker at `time_us`. The dilution of precision is that of differences.
     pub fn health(&self, time_us: u64) -> Health<T> {
-        // What is common to all is the clock's.
+        // The clock absorbs any common bias.
         let mut health = self.tracker.health_beside(Common::NONE, time_us);
         let Some(dilution) = health.dilution else { return health };
         let own = self.dilution(time_us);
-        // The clock spreads constant errors as it does all others.
+        // The clock magnifies constant errors as it does all others.
         let factor = own.map_or(T::ONE, |own| own / dilution).max(T::ONE);
         let bias_sigma = health.bias_sigma * factor;
         health.position_sigma = health.position_sigma.map(|sigma| {
@@ -129,7 +132,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         health
     }
 
-    /// From directions less their mean, which the clock takes.
+    /// Dilution of precision of the directions minus their mean, which the clock absorbs.
     fn dilution(&self, time_us: u64) -> Option<T> {
         let (position, fresh_us) = (self.position()?, self.tracker.pace.fresh_us());
         let heard = self.tracker.links.iter();
@@ -155,7 +158,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         dilution_of_precision(centred).ok()
     }
 
-    /// The difference, freed of both anchors' biases, if it can be one and is new.
+    /// The difference without both anchors' biases, if it is plausible and new.
     fn admit(&self, sample: &DifferenceSample<T>) -> Result<T, Error> {
         let [first, second] = sample.anchors;
         let links = &self.tracker.links;
@@ -177,12 +180,12 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         Ok(sample.difference - other.anchor.bias + one.anchor.bias)
     }
 
-    /// The first anchor's arrival, if this difference continues another.
+    /// The first anchor's arrival, if this difference continues another one.
     fn continued(&self, sample: &DifferenceSample<T>) -> Option<T> {
         let [first, _] = sample.anchors;
         let age_us = match self.last {
             Some((last, true)) if last == first => CHAINED_US,
-            // Either this anchor was late, or the clock has jumped.
+            // Either this anchor's arrival was late, or the clock has jumped.
             Some((last, false)) if last == first => return None,
             _ => REMEMBERED_US,
         };
@@ -231,7 +234,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         Ok(report)
     }
 
-    /// Keeps the arrivals of a difference for a first position, and makes one if it can.
+    /// Stores the arrivals of a difference for a first position, and determines one if possible.
     fn collect(&mut self, sample: &DifferenceSample<T>, difference: T) -> Report<T> {
         let [first, second] = sample.anchors;
         let (time_us, fresh_us) = (sample.time_us, self.tracker.pace.fresh_us());
@@ -246,14 +249,14 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
             (Some(arrival), _) => (second, arrival + difference),
             (None, Some(arrival)) => (first, arrival - difference),
             (None, None) if is_first => {
-                // What is looked for is of another clock.
+                // The search in progress belongs to another clock.
                 self.tracker.give_up();
                 if let Some(link) = self.tracker.links.get_mut(first) {
                     link.hear(time_us, T::ZERO);
                 }
                 (second, difference)
             }
-            // Of no clock that is known.
+            // Not related to any known clock.
             (None, None) => return collected,
         };
         self.last = Some((anchor, true));
@@ -266,7 +269,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
                 count += 1;
             }
         }
-        // As many as there are unknowns, and one to spare: of fewer there may be two positions.
+        // One more than the unknowns: with fewer there may be two positions.
         if count < D as i32 + 2 {
             if let Some(link) = links.get_mut(anchor) {
                 link.hear(time_us, range);
@@ -275,8 +278,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
             return collected;
         }
         let mut range = range;
-        // Their clock is chosen so that they look like distances: least squares knows it to some metres beforehand. It stays
-        // while a position is looked for, whose clock it is.
+        // The clock is chosen so that arrivals look like distances: least squares knows it to some metres beforehand.
+        // It is kept during the search for a position, to which it belongs.
         if !is_begun {
             let by = self.reach - sum * T::from_micro(count.min(2000) * 1_000_000).recip();
             for link in links.iter_mut() {
@@ -287,7 +290,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         self.tracker.collect(&RangeSample { time_us, anchor, range }, range)
     }
 
-    /// The tracker has no position: arrivals so far belong to no clock any more.
+    /// Forgets all arrivals, which belong to no clock any more once the tracker has no position.
     fn forget(&mut self) {
         for link in &mut self.tracker.links {
             link.forget();
@@ -295,7 +298,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         self.last = None;
     }
 
-    /// Sets a clock that has walked far back to zero, with all arrivals.
+    /// Resets a clock that has drifted far from zero, and shifts all arrivals accordingly.
     fn set_back(&mut self) {
         let Place::Known(estimate) = &mut self.tracker.place else { return };
         let clock = &mut estimate.mean.as_array_mut()[2 * D];

@@ -1,4 +1,4 @@
-//! Positions from the ranges of one moment, without memory: the paper's "unfiltered".
+//! Positions from simultaneous ranges, without memory: the paper's "unfiltered".
 
 use crate::pace::Pace;
 use crate::{Anchor, Error, RangeSample};
@@ -7,20 +7,20 @@ use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::{Error as NoPosition, Observation, Solver, trilaterate};
 use nalgebra::SVector;
 
-/// Method by which the ranges of one moment become a position.
+/// Method by which simultaneous ranges are converted to a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum EpochMethod {
-    /// Linear trilateration (the paper's eqs 3–7); of the solver only the height is read.
+    /// Linear trilateration (the paper's eqs 3–7); only the solver's height is used.
     Trilateration,
-    /// Nonlinear least squares, all ranges with the same weight.
+    /// Nonlinear least squares, with equal weights.
     LeastSquares,
 }
 
-/// The freshest range of each of up to A anchors, and the position that they make by themselves.
+/// Stores the latest range of each of up to A anchors, and computes the position from them alone.
 ///
-/// Frame: the room's axes in which the anchors are given, right-handed with z up, m.
+/// Positions are in the room frame in which the anchors are given, right-handed with z up, m.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EpochSolver<T: Scalar, const A: usize> {
@@ -34,10 +34,10 @@ pub struct EpochSolver<T: Scalar, const A: usize> {
 }
 
 impl<T: Scalar, const A: usize> EpochSolver<T, A> {
-    /// Variance of a range, m². All have the same: it only tells ranges that agree from ranges that do not.
+    /// Variance of a range, m², equal for all: it only serves to distinguish consistent ranges from inconsistent ones.
     const VARIANCE: f64 = 0.01;
 
-    /// A solver for these anchors, none of which has been heard.
+    /// Creates a solver for these anchors, without any range.
     ///
     /// # Errors
     /// [`Error::TooManyAnchors`] or [`Error::NotFinite`].
@@ -54,15 +54,15 @@ impl<T: Scalar, const A: usize> EpochSolver<T, A> {
         Ok(Self { method, solver, anchors, last: [None; A], pace })
     }
 
-    /// The tag's height in two dimensions, m.
+    /// Height of the tag, m, for a position in two dimensions.
     pub fn height(&self) -> T {
         self.solver.height
     }
 
-    /// Sets the tag's height in two dimensions, m.
+    /// Sets the height of the tag, m, for a position in two dimensions.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; the height is as it was.
+    /// [`Error::NotFinite`]; the height is unchanged.
     pub fn set_height(&mut self, height: T) -> Result<(), Error> {
         if !height.is_finite() {
             return Err(Error::NotFinite);
@@ -71,11 +71,11 @@ impl<T: Scalar, const A: usize> EpochSolver<T, A> {
         Ok(())
     }
 
-    /// Keeps a range as its anchor's last.
+    /// Stores a range as its anchor's latest.
     ///
     /// # Errors
     /// [`Error::NoSuchAnchor`], [`Error::NotFinite`], [`Error::ImplausibleRange`], [`Error::Duplicate`] or
-    /// [`Error::OutOfOrder`]; the anchor's last range is as it was.
+    /// [`Error::OutOfOrder`]; the anchor's last range is unchanged.
     pub fn range(&mut self, sample: &RangeSample<T>) -> Result<(), Error> {
         let anchor = self.anchors.get(sample.anchor).ok_or(Error::NoSuchAnchor)?;
         let last = self.last.get_mut(sample.anchor).ok_or(Error::NoSuchAnchor)?;
@@ -91,12 +91,11 @@ impl<T: Scalar, const A: usize> EpochSolver<T, A> {
         }
     }
 
-    /// The position (m) that the ranges of no more than a second before `time_us` make, or of two rounds of the
-    /// anchors where those take longer. Least squares looks
-    /// near `start`, too, where one is given.
+    /// The position (m) from the ranges of at most one second before `time_us`, or of two rounds of the anchors if
+    /// those take longer. Least squares also searches near `start`, if it is given.
     ///
     /// # Errors
-    /// [`kestirim_uwb_ranging::Error`]: these ranges make none.
+    /// [`kestirim_uwb_ranging::Error`] if these ranges do not determine a position.
     pub fn position<const D: usize>(
         &self,
         time_us: u64,
@@ -109,7 +108,7 @@ impl<T: Scalar, const A: usize> EpochSolver<T, A> {
                 continue;
             }
             let variance = T::from_f64(Self::VARIANCE);
-            // There are no more anchors than places.
+            // There are no more anchors than the capacity.
             let _ = observations.push(Observation { anchor: anchor.position, range, variance });
         }
         match self.method {
@@ -120,7 +119,7 @@ impl<T: Scalar, const A: usize> EpochSolver<T, A> {
         }
     }
 
-    /// The anchors and the last range of each, freed of its bias, m.
+    /// The anchors with the last range of each, without its bias, m.
     pub(crate) fn heard(&self) -> impl Iterator<Item = (&Anchor<T>, Option<T>)> {
         self.anchors.iter().zip(self.last.iter().map(|last| last.map(|(_, range)| range)))
     }

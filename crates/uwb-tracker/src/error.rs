@@ -1,6 +1,6 @@
 use core::fmt;
 
-/// Reason for which a sample was refused. The tracker is as it was before the call.
+/// The reason why a sample was refused. The tracker is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -8,22 +8,21 @@ use core::fmt;
 pub enum Error {
     /// A number is NaN, infinite or on a rail of fixed point.
     NotFinite,
-    /// No radio measures this range: below −1 m or above 200 m.
+    /// The range is below −1 m or above 200 m, which no radio measures.
     ImplausibleRange,
-    /// No robot accelerates or drives like this: beyond what its sensors can say (500 m/s², 100 m/s, 100 rad/s).
+    /// The motion is beyond the limits of sensors on a robot (500 m/s², 100 m/s, 100 rad/s).
     ImplausibleMotion,
-    /// No anchor has this number.
+    /// There is no anchor with this index.
     NoSuchAnchor,
-    /// More anchors than the tracker has room for.
+    /// There are more anchors than the tracker has room for.
     TooManyAnchors,
-    /// Fewer than three anchors, where a height is to be found.
+    /// There are fewer than three anchors, where a height is to be found.
     TooFewAnchors,
-    /// The same anchor's range for the same time came before.
+    /// A range of the same anchor with the same time was processed before.
     Duplicate,
-    /// The sample is older than the estimate. If all are, the clock has jumped: make a new
-    /// tracker.
+    /// The sample is older than the estimate. If all samples are, the clock has jumped: create a new tracker.
     OutOfOrder,
-    /// The estimate refused it.
+    /// The Kalman filter refused the update.
     Estimate(kestirim_kalman::Error),
 }
 

@@ -15,11 +15,12 @@ use nalgebra::SVector;
 pub enum State {
     /// No position has been found yet.
     Initialising,
-    /// Ranges come in and fit.
+    /// Ranges arrive and are consistent.
     Tracking,
-    /// No range came for a second, or two rounds of the anchors where those take longer: the position is extrapolated.
+    /// No range arrived for a second, or for two rounds of the anchors if those take longer: the position is
+    /// extrapolated.
     Coasting,
-    /// The position has become worthless: the next ranges make a new one.
+    /// The position has become useless: the next ranges determine a new one.
     Lost,
 }
 
@@ -30,37 +31,40 @@ pub enum State {
 pub struct Health<T> {
     /// State of the position.
     pub state: State,
-    /// Mean NIS of the last twenty ranges or so that were taken in: 1 when the model is right.
+    /// Mean NIS of about the last twenty ranges that were used: 1 if the model is right.
     pub nis: T,
-    /// Ranges taken in so far.
+    /// Number of ranges used so far.
     pub taken: u32,
-    /// Ranges left out so far.
+    /// Number of ranges rejected so far.
     pub rejected: u32,
-    /// Positions begun anew after the first.
+    /// Number of positions begun after the first.
     pub restarts: u16,
-    /// Anchors heard within the last second, or two rounds of the anchors where those take longer, but for those that have
-    /// long measured too long.
+    /// Number of anchors heard within the last second, or two rounds of the anchors if those take longer, except
+    /// blocked ones, whose ranges have been too long for a while.
     pub heard: u8,
-    /// Dilution of precision of those anchors; none if they do not determine a position.
+    /// Dilution of precision of the anchors heard; `None` if they do not determine a position.
     pub dilution: Option<T>,
-    /// How far [`Tracker::mirror_image`](crate::Tracker::mirror_image) is, the other place that the ranges allow, m; none if they
-    /// allow one only, or of a tracker that does not look for it, as that on wheels.
+    /// Distance (m) to [`Tracker::mirror_image`](crate::Tracker::mirror_image), the other position that the ranges
+    /// allow; `None` if they allow only one, or for a tracker that does not check this, such as the one on wheels.
     pub mirror: Option<T>,
-    /// Standard deviation of the position, root of its variances' sum, m: the filter's own, that of the anchors'
-    /// constant errors, and that of being at the other place as likely as here; none without a position.
+    /// Standard deviation of the position (root of the sum of its variances), m: that of the filter, that of the
+    /// anchors' constant errors, and that of the mirror image being as likely; `None` without a position.
     pub position_sigma: Option<T>,
-    /// That of constant errors alone, m: what [`Config::bias_sigma`](crate::Config::bias_sigma), more where the tag stands, and what
-    /// was learnt beyond [`Config::range_sigma`](crate::Config::range_sigma) makes of the position through the anchors heard, and so does the common bias where these are too few to tell it; where
-    /// they do not determine a position, through all that ever were.
+    /// The part of `position_sigma` that is due to constant errors, m.
+    ///
+    /// It comprises the effect on the position, through the anchors heard, of
+    /// [`Config::bias_sigma`](crate::Config::bias_sigma) (more while the tag stands), of noise learnt beyond
+    /// [`Config::range_sigma`](crate::Config::range_sigma), and of the common bias where these anchors are too few to
+    /// estimate it. Where they do not determine a position, all anchors ever heard are used.
     pub bias_sigma: T,
-    /// Whether lately more than a third of the ranges were left out, but for those of blocked anchors.
+    /// Whether more than a third of the recent ranges were rejected, not counting those of blocked anchors.
     pub distrusted: bool,
-    /// Whether the tag stands still, as far as IMU or wheels tell.
+    /// Whether the tag stands still, according to the IMU or the wheels.
     pub still: bool,
 }
 
 impl<T: Copy> Health<T> {
-    /// The same in the words of all systems. That no position has been found yet is no fault.
+    /// Converts to the system-wide health flags. That no position has been found yet is not a fault.
     pub fn in_short(&self) -> kestirim_health::Health {
         let is_blind = self.state == State::Tracking && self.dilution.is_none();
         kestirim_health::Health::GOOD
@@ -73,16 +77,16 @@ impl<T: Copy> Health<T> {
     }
 }
 
-/// Mean NIS of ranges up to which they agree.
+/// Mean NIS of ranges below which they count as consistent.
 const NIS_OF_AGREEMENT: f64 = 4.0;
 
-/// Speed at which what is around a tag changes within the second or so that a position is averaged over, m/s.
+/// Speed at which a tag's surroundings change within the second or so over which a position is averaged, m/s.
 const CHANGING_SPEED: f64 = 0.1;
 
-/// Least weight of a link's constant error beside the best link's.
+/// Smallest weight of a link's constant error relative to the best link's.
 const LEAST_WEIGHT: f64 = 1e-3;
 
-/// Root mean square error of one of two equally likely places, as a share of their distance.
+/// Root mean square error of choosing one of two equally likely positions, relative to their distance.
 const SQRT_HALF: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
 /// Counters of a tracker.
@@ -92,7 +96,7 @@ pub(crate) struct Counters<T> {
     pub(crate) nis: T,
     pub(crate) taken: u32,
     pub(crate) rejected: u32,
-    /// Two for each that was rejected lately, less one for each that was taken in.
+    /// Increased by two for each recent rejection, decreased by one for each range used.
     pub(crate) distrust: u16,
     pub(crate) starts: u16,
 }
@@ -109,16 +113,17 @@ impl<T: Scalar> Counters<T> {
         self.distrust = self.distrust.saturating_sub(1);
     }
 
-    /// Whether at least one anchor more than the `coordinates` agree beside this one (that counts among those `heard` unless it
-    /// is blocked).
+    /// Whether the ranges are consistent and more than `coordinates` other anchors are heard. (This anchor is among
+    /// the `heard` ones unless it is blocked.)
     #[inline]
     pub(crate) fn others_agree(&self, is_blocked: bool, heard: u8, coordinates: usize) -> bool {
         let others = usize::from(heard).saturating_sub(usize::from(!is_blocked));
         self.nis < T::from_f64(NIS_OF_AGREEMENT) && others > coordinates
     }
 
-    /// Counts a range that was left out; whether half of them are lately, of so many anchors `heard`: then the position
-    /// is to be given up. That an anchor is blocked is known, and no reason.
+    /// Counts a rejected range. Returns whether the position is to be given up: whether more than a third of the
+    /// recent ranges, of this many anchors `heard`, were rejected. Ranges of an anchor known to be blocked do not
+    /// count.
     #[inline]
     pub(crate) fn reject(&mut self, heard: u8, is_blocked: bool) -> bool {
         self.rejected = self.rejected.wrapping_add(1);
@@ -129,14 +134,14 @@ impl<T: Scalar> Counters<T> {
         self.distrust > 2 * u16::from(heard)
     }
 
-    /// A position was begun.
+    /// Resets the counters for a new position.
     pub(crate) fn begun(&mut self) {
         self.starts = self.starts.saturating_add(1);
         (self.distrust, self.nis) = (0, T::ONE);
     }
 }
 
-/// Anchors that were heard lately and of which nothing is in the way, with their numbers.
+/// The anchors heard recently and not blocked, with their indices.
 #[inline]
 pub(crate) fn heard_lately<'a, T: Scalar>(
     links: &'a [Link<T>],
@@ -149,13 +154,13 @@ pub(crate) fn heard_lately<'a, T: Scalar>(
     links.iter().enumerate().filter(move |(_, link)| is_heard(link))
 }
 
-/// How many they are.
+/// Number of anchors heard recently and not blocked.
 #[inline]
 pub(crate) fn count_heard<T: Scalar>(links: &[Link<T>], pace: &Pace, time_us: u64) -> u8 {
     heard_lately(links, pace, time_us).count() as u8
 }
 
-/// What health needs to know of an estimate.
+/// The properties of an estimate that the health depends on.
 pub(crate) struct Place<T, const D: usize> {
     /// Position, m.
     pub(crate) position: SVector<T, D>,
@@ -163,27 +168,27 @@ pub(crate) struct Place<T, const D: usize> {
     pub(crate) variance: T,
     /// Square of the speed, m²/s².
     pub(crate) speed_squared: T,
-    /// How far from it the other place is that the ranges allow, if there is one, m.
+    /// Distance to the mirror image that the ranges allow, if there is one, m.
     pub(crate) mirror: Option<T>,
-    /// What all ranges may be too long by beyond what the covariance knows of.
+    /// Common bias that is not represented in the covariance.
     pub(crate) common: Common<T>,
 }
 
-/// A common bias that is considered, and not learnt.
+/// A common bias that is considered, but not estimated.
 #[derive(Clone, Copy)]
 pub(crate) struct Common<T> {
-    /// Its standard deviation, m.
+    /// Standard deviation of the bias, m.
     pub(crate) sigma: T,
-    /// How it depends on the distance: a constant, and a slope, 1/m.
+    /// Dependence of the bias on the distance: a constant, and a slope, 1/m.
     pub(crate) shape: [T; 2],
 }
 
 impl<T: Scalar> Common<T> {
-    /// None is considered: there is none, or it is a state that every range tells.
+    /// No bias is considered: there is none, or it is a state that every range observes.
     pub(crate) const NONE: Self = Self { sigma: T::ZERO, shape: [T::ZERO; 2] };
 }
 
-/// Health of a tracker that has this place.
+/// The health of a tracker with this estimate.
 pub(crate) fn health<T: Scalar, const D: usize>(
     (counters, config): (&Counters<T>, &Config<T>),
     (links, pace): (&[Link<T>], &Pace),
@@ -198,7 +203,7 @@ pub(crate) fn health<T: Scalar, const D: usize>(
         dilution_of_precision(fresh.clone().map(direction)).ok()
     });
     let bias_sigma = place.as_ref().map_or(T::ZERO, |place| {
-        // Where they are too few, the position keeps what all have made of it.
+        // If the anchors heard are too few, the position retains the errors of all.
         let all = || bias_sigma(place, config, links.iter().filter(|link| link.is_heard()));
         let found = bias_sigma(place, config, fresh.clone()).or_else(all);
         let own = found.or(dilution.map(|dilution| dilution * config.bias_sigma));
@@ -230,7 +235,7 @@ pub(crate) fn health<T: Scalar, const D: usize>(
     }
 }
 
-/// The range to an anchor.
+/// The expected range to an anchor.
 fn expected<T: Scalar, const D: usize>(
     place: &Place<T, D>,
     config: &Config<T>,
@@ -239,13 +244,14 @@ fn expected<T: Scalar, const D: usize>(
     expected_range(&place.position, config.height, &link.anchor.position)
 }
 
-/// What the constant errors of these anchors' ranges make of the position, m; none if they do not determine it.
+/// The effect of the constant errors of these anchors' ranges on the position, m; `None` if they do not determine it.
 ///
-/// Each anchor keeps [`Config::bias_sigma`]. Where a tag stands, so does what is around it and between it and an anchor: what
-/// this adds is constant then, about as much again (an office's links beside its anchors' biases), and what has been learnt
-/// of an anchor's ranges beyond their noise is no noise; ranges of which nothing has been learnt yet count as poor. On the way
-/// all this changes, and averages, but for what was learnt beyond [`Config::range_sigma`]: what stands in the way, and how a tag moves
-/// otherwise than it is supposed to, makes errors that stay for many ranges.
+/// Each anchor contributes [`Config::bias_sigma`]. While a tag stands, its surroundings and the obstacles between it
+/// and an anchor do not change either: their contribution is then constant, about as much again (an office's links
+/// besides its anchors' biases), and variances learnt beyond the noise are not noise; ranges of which nothing has been
+/// learnt yet count as poor. While it moves, all this changes and averages out, except for what was learnt beyond
+/// [`Config::range_sigma`]: obstacles, and motion that differs from the model, cause errors that persist for many
+/// ranges.
 fn bias_sigma<'a, T: Scalar, const D: usize>(
     place: &Place<T, D>,
     config: &Config<T>,
@@ -264,8 +270,8 @@ fn bias_sigma<'a, T: Scalar, const D: usize>(
         let unusual = (link.noise.variance() - usual).max(T::ZERO);
         own + (stands * (own + learnt)).max(unusual)
     };
-    // Beside the best link, so that fixed point has room; less than a thousandth of its weight would look as if it did not
-    // determine what a poor link alone tells.
+    // Relative to the best link, so that fixed point has room. With less than a thousandth of its weight, a poor link
+    // would seem not to determine what it alone observes.
     let best = links.clone().map(variance).fold(T::MAX, T::min);
     let weighted = links.map(|link| {
         let weight = (best / variance(link)).max(T::from_f64(LEAST_WEIGHT));
@@ -274,11 +280,11 @@ fn bias_sigma<'a, T: Scalar, const D: usize>(
     Some(weighted_dilution(weighted).ok()? * best.sqrt())
 }
 
-/// What the common bias that is considered makes of the position through the ranges of these anchors, which the filter weighs by
-/// what it has learnt of their noise, m; none if they do not determine it.
+/// The effect of the considered common bias on the position, through the ranges of these anchors with the weights from
+/// the noise that the filter has learnt, m; `None` if they do not determine it.
 ///
-/// What of the bias no position explains would be in their residuals, which are no larger than that noise: the more there would
-/// be, the smaller it must be.
+/// The part of the bias that no position explains would appear in the residuals, which are no larger than that noise:
+/// the larger this part, the smaller the bias must be.
 fn common_sigma<'a, T: Scalar, const D: usize>(
     place: &Place<T, D>,
     config: &Config<T>,
@@ -304,7 +310,7 @@ fn common_sigma<'a, T: Scalar, const D: usize>(
         sum + weight * residual * residual
     });
     let left = sigma * (best / (best + unexplained * sigma * sigma)).sqrt();
-    // Near the anchors' line a range grows with the square of the way from it.
+    // Near the line of the anchors, a range grows with the square of the distance from it.
     let bent = (T::TWO * farthest * left).sqrt();
     Some((T::norm(&moved) * left).min(bent))
 }

@@ -1,4 +1,4 @@
-//! The height of a tag in the plane, from its ranges.
+//! The height of a tag that moves in a plane, from its ranges.
 
 use crate::pace::Pace;
 use crate::{Anchor, Error, RangeSample};
@@ -7,15 +7,15 @@ use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::{Error as NoPlace, Height, HeightSearch, Quartiles};
 use nalgebra::SVector;
 
-/// Finds the height of a tag that moves at one, from single ranges as they come in, for up to A anchors.
+/// Finds the constant height of a tag, from single ranges as they arrive, for up to A anchors.
 ///
-/// Ranges of different times are interpolated to the same moment, and those of a place, half a metre wide,
-/// become medians, so that wild ones do not count; [`HeightSearch`] makes the height of the places.
-/// It answers with a height at any time. Use that, with the biases that belong to it unless the anchors are
-/// calibrated, once its [`Height::position_sigma`] is small enough: `host-sim` asks for 15 cm, and adds it to
-/// what the tracker says of its own position.
+/// Ranges at different times are interpolated to common times, and those within a place, half a metre wide, are
+/// reduced to medians, so that outliers do not count; [`HeightSearch`] computes the height from the places. A height
+/// is available at any time. Use it, together with its biases unless the anchors are calibrated, once its
+/// [`Height::position_sigma`] is small enough: `host-sim` requires 15 cm, and adds it to the tracker's own position
+/// uncertainty.
 ///
-/// 2.3 kB for four anchors in `f32`, 6.4 kB for eight.
+/// Takes 2.3 kB for four anchors in `f32`, 6.4 kB for eight.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HeightFinder<T: Scalar, const A: usize> {
@@ -24,15 +24,15 @@ pub struct HeightFinder<T: Scalar, const A: usize> {
     /// The last range of each anchor without its bias, and the one before it.
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     links: [Link<T>; A],
-    /// Time of the newest range (µs).
+    /// Time of the newest range, µs.
     newest_us: Option<u64>,
-    /// Time of the last moment that was taken in (µs).
+    /// Time of the last common time that was used, µs.
     moment_us: Option<u64>,
     place: Option<Place<T, A>>,
     pace: Pace,
 }
 
-/// Two ranges (m) and their times (µs).
+/// An anchor's last two ranges (m) with their times (µs).
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Link<T> {
@@ -40,7 +40,7 @@ struct Link<T> {
     before: Option<(u64, T)>,
 }
 
-/// The ranges of all moments at which the tag was within a place.
+/// The ranges at all times at which the tag was within a place.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -58,18 +58,18 @@ struct Place<T, const A: usize> {
     moments: u32,
 }
 
-/// What the anchors may measure too long before anything is known of it, m: all, and each by itself.
-/// Uncalibrated, these are the deviations of `Config::common_bias_sigma` and of the anchors' calibration; of
-/// calibrated anchors, 5 cm is what their variance may fall to.
+/// Prior standard deviations of the common bias and of each anchor's own bias, m. Uncalibrated, these are
+/// `Config::common_bias_sigma` and the standard deviation of the anchors' calibration; for calibrated anchors, their
+/// variances may fall to (5 cm)².
 const UNCALIBRATED: [f64; 2] = [0.3, 0.1];
 const CALIBRATED: [f64; 2] = [0.05, 0.05];
-/// A place ends where two ranges differ by more from those of its beginning, m. Errors of links of places
-/// that are farther apart are independent: on 90 recorded points, they correlate by 0.2 over 9 cm, by 0.1 from
-/// 20 to 40 cm, and by 0.03 over 2 m.
+/// A place ends when two ranges differ by more than this from those at its beginning, m. Errors of links at places
+/// farther apart are independent: on 90 recorded points, their correlation is 0.2 over 9 cm, 0.1 from 20 to 40 cm, and
+/// 0.03 over 2 m.
 const PLACE: f64 = 0.5;
 
 impl<T: Scalar, const A: usize> HeightFinder<T, A> {
-    /// For anchors whose biases are known.
+    /// Creates a search for anchors with known biases.
     ///
     /// # Errors
     /// [`Error::TooManyAnchors`], [`Error::TooFewAnchors`] for fewer than three, or [`Error::NotFinite`].
@@ -78,10 +78,10 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
         Self::new(anchors, T::from_f64(common), T::from_f64(own))
     }
 
-    /// For anchors as they come.
+    /// Creates a search for uncalibrated anchors.
     ///
     /// # Errors
-    /// As [`HeightFinder::calibrated`].
+    /// Those of [`HeightFinder::calibrated`].
     pub fn uncalibrated(anchors: &[Anchor<T>]) -> Result<Self, Error> {
         let [common, own] = UNCALIBRATED;
         Self::new(anchors, T::from_f64(common), T::from_f64(own))
@@ -110,7 +110,7 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
         })
     }
 
-    /// Takes in a range; whether that ended a place, so that the height may be another.
+    /// Processes a range. Returns whether it ended a place, so that the height may have changed.
     ///
     /// # Errors
     /// [`Error::NoSuchAnchor`], [`Error::NotFinite`], [`Error::ImplausibleRange`], [`Error::Duplicate`] or
@@ -124,7 +124,7 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
             Some((heard_us, _)) if heard_us > sample.time_us => return Err(Error::OutOfOrder),
             _ => {}
         }
-        // All ranges of a time have come when there is one of a later time.
+        // All ranges of a time have arrived when there is one with a later time.
         let is_later = self.newest_us.is_none_or(|newest_us| newest_us < sample.time_us);
         let ended = is_later && self.take_moment();
         if is_later {
@@ -138,8 +138,8 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
         Ok(ended)
     }
 
-    /// Ends the place at which the tag is, as when it is picked up or nothing more will come. Without this, a
-    /// place counts once it has been left.
+    /// Ends the present place, as when the tag is picked up or no more ranges will come. Otherwise a place counts once
+    /// it has been left.
     pub fn end_place(&mut self) {
         self.take_moment();
         self.close_place();
@@ -149,29 +149,29 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
         let Some(place) = self.place.take() else { return };
         let mut medians = [None; A];
         for (median, ranges) in medians.iter_mut().zip(&place.ranges) {
-            // Of an anchor that was heard half of the time.
+            // Only for an anchor that was heard half of the time.
             if ranges.count() >= place.moments.div_ceil(2) {
                 *median = ranges.median();
             }
         }
-        // A place with too few anchors, or none that the ranges can mean, says nothing.
+        // A place with too few anchors, or without a consistent position, is ignored.
         let _ = self.search.add(&medians);
     }
 
-    /// The height, with its standard deviation and what the anchors measure too long beyond [`Anchor::bias`]; none
-    /// before the tag has left a place.
+    /// The height, with its standard deviation and the anchors' biases in addition to [`Anchor::bias`]; `None` before
+    /// the tag has left a place.
     pub fn height(&self) -> Option<Height<T, A>> {
         self.search.height()
     }
 
-    /// Takes in the newest moment, if it is new; whether that ended a place.
+    /// Uses the newest common time, if it is new. Returns whether that ended a place.
     fn take_moment(&mut self) -> bool {
         let moment = self.newest_us.and_then(|newest_us| self.moment(newest_us));
         moment.is_some_and(|ranges| self.take(&ranges))
     }
 
-    /// The ranges at the newest moment to which all anchors that are heard can be interpolated; none if
-    /// that is not new.
+    /// The ranges at the newest time to which those of all anchors heard can be interpolated; `None` if that is not
+    /// new.
     fn moment(&mut self, time_us: u64) -> Option<[Option<T>; A]> {
         let fresh_us = self.pace.fresh_us();
         let fresh = |heard_us: u64| time_us.saturating_sub(heard_us) <= fresh_us;
@@ -192,7 +192,7 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
             if interval_us == 0 || interval_us > fresh_us {
                 return None;
             }
-            // No longer than ranges are ever fresh.
+            // No longer than the longest time for which ranges are fresh.
             let seconds = |us: u64| T::from_micro(us.min(u64::from(Pace::MOST_US)) as i32);
             Some(before + (last - before) * (seconds(since_us) / seconds(interval_us)))
         }))
@@ -222,7 +222,7 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
 }
 
 impl<T: Scalar, const A: usize> Place<T, A> {
-    /// Whether two ranges differ from those of the beginning: one may be wild.
+    /// Whether two ranges differ from those at the beginning: one alone may be an outlier.
     fn is_left(&self, ranges: &[Option<T>; A]) -> bool {
         let pairs = self.first.iter().zip(ranges);
         let pairs = pairs.filter_map(|(first, range)| Some(((*first)?, (*range)?)));

@@ -4,19 +4,19 @@ use kestirim_kalman::Gate;
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// An anchor: where it is, and by how much it measures too long.
+/// An anchor, with its position and range bias.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Anchor<T: Scalar> {
-    /// Position in the room's axes (right-handed, z up), m.
+    /// Position in the room frame (right-handed, z up), m.
     pub position: SVector<T, 3>,
-    /// Bias of its ranges, m: what they are too long by; zero if that is not known.
+    /// Bias of its ranges, m, positive if they are too long; zero if unknown.
     pub bias: T,
 }
 
 impl<T: Scalar> Anchor<T> {
-    /// Refuses an anchor whose position or bias is not finite.
+    /// Checks that position and bias are finite.
     pub(crate) fn check(&self) -> Result<(), Error> {
         let numbers = self.position.iter().chain([&self.bias]);
         if numbers.copied().all(T::is_finite) { Ok(()) } else { Err(Error::NotFinite) }
@@ -30,16 +30,16 @@ pub(crate) struct Link<T: Scalar> {
     pub(crate) anchor: Anchor<T>,
     pub(crate) noise: MeasurementNoise<T>,
     pub(crate) gate: Gate<T>,
-    /// From this time on a range is new (µs); 0 if none came yet.
+    /// Time from which on a range counts as new, µs; 0 before the first one.
     next_us: u64,
-    /// The last range, freed of its bias, m.
+    /// The last range, without its bias, m.
     range: T,
-    /// Whether it has measured too long for a while, when others agreed: something stands in its way.
+    /// Whether an obstacle is assumed: its ranges have been too long for a while, when others were consistent.
     pub(crate) is_blocked: bool,
 }
 
 impl<T: Scalar> Link<T> {
-    /// Number of ranges in a row that do not fit after which one is taken in all the same.
+    /// Number of successive rejections after which a range is used in any case.
     const PATIENCE: u16 = 20;
 
     pub(crate) fn new(anchor: Anchor<T>, config: &Config<T>) -> Self {
@@ -53,26 +53,26 @@ impl<T: Scalar> Link<T> {
         }
     }
 
-    /// The range, freed of its bias, if it is no older than `fresh_us` at `time_us`, and its age (µs).
+    /// The range without its bias, and its age (µs), if it is no older than `fresh_us` at `time_us`.
     #[inline]
     pub(crate) fn fresh(&self, time_us: u64, fresh_us: u64) -> Option<(T, u64)> {
         let age_us = time_us.saturating_add(1).saturating_sub(self.next_us);
         (self.next_us > 0 && age_us <= fresh_us).then_some((self.range, age_us))
     }
 
-    /// The last range, freed of its bias, m; zero if none came yet.
+    /// The last range, without its bias, m; zero before the first one.
     #[inline]
     pub(crate) fn last(&self) -> T {
         self.range
     }
 
-    /// Whether a range ever came.
+    /// Whether any range has arrived.
     #[inline]
     pub(crate) fn is_heard(&self) -> bool {
         self.next_us > 0
     }
 
-    /// The range of a sample, freed of its bias, if it can be one and is new.
+    /// The range of a sample without its bias, if it is plausible and new.
     #[inline]
     pub(crate) fn admit(&self, sample: &RangeSample<T>) -> Result<T, Error> {
         sample.check()?;
@@ -83,24 +83,24 @@ impl<T: Scalar> Link<T> {
         Ok(sample.range - self.anchor.bias)
     }
 
-    /// Keeps a range, freed of its bias.
+    /// Stores a range, given without its bias.
     #[inline]
     pub(crate) fn hear(&mut self, time_us: u64, range: T) {
         self.next_us = time_us.wrapping_add(1);
         self.range = range;
     }
 
-    /// Forgets the last range: it is as if none had come.
+    /// Forgets the last range, as if none had arrived.
     pub(crate) fn forget(&mut self) {
         self.next_us = 0;
     }
 
-    /// Lengthens the last range, m.
+    /// Adds an offset to the last range, m.
     pub(crate) fn shift(&mut self, by: T) {
         self.range += by;
     }
 
-    /// The same link for a new estimate: noise and gate begin anew.
+    /// The link for a new estimate, with reset noise and gate.
     pub(crate) fn begun(&self, config: &Config<T>) -> Self {
         Self { next_us: self.next_us, range: self.range, ..Self::new(self.anchor, config) }
     }
@@ -127,7 +127,7 @@ mod tests {
         assert_eq!(link.fresh(5000, 1000), Some((3.0, 0)));
         assert_eq!(link.fresh(6000, 1000), Some((3.0, 1000)));
         assert_eq!(link.fresh(6001, 1000), None);
-        // A late range of another anchor asks for a time before this one.
+        // A late range of another anchor refers to an earlier time.
         assert_eq!(link.fresh(4000, 1000), Some((3.0, 0)));
     }
 

@@ -1,5 +1,5 @@
-//! The other place that the ranges of too few anchors allow: behind the line through two, or the plane through three; and those of
-//! all, if all are in one line or plane.
+//! The mirror image that the ranges of too few anchors allow: behind the line through two, or the plane through three;
+//! or that of all anchors, if they are collinear or coplanar.
 
 use crate::Config;
 use crate::link::Link;
@@ -8,25 +8,26 @@ use kestirim_scalar::{Components, Scalar};
 use kestirim_uwb_ranging::expected_range;
 use nalgebra::SVector;
 
-/// So many standard deviations from the line, a tag may have crossed it or turned back.
+/// Distance from the line, in standard deviations, within which a tag may have crossed it or turned back.
 const REACH: f64 = 3.0;
-/// By so many standard deviations a range must fit the place better than the other one.
+/// Number of standard deviations by which a range must fit one position better than the other.
 const CLEAR: f64 = 3.0;
-/// Anchors that are nearer to each other in the plane stand above each other, m.
+/// Horizontal distance below which anchors count as one above the other, m.
 const NEAREST: f64 = 0.05;
-/// Anchors that are no farther from a line, or plane, are in it, m: what they tell of its two sides is less than their errors.
+/// Distance from a line or plane within which anchors count as lying in it, m: they distinguish its two sides by less
+/// than their errors.
 const FLAT: f64 = 0.1;
-/// A place outside of the room by no more may still be in it, m, as where a position is looked for.
+/// Margin by which a position may be outside of the room, m, as in the search for a position.
 pub(crate) const ROOM_MARGIN: f64 = 0.5;
 
-/// Anchors in whose line, or plane, a tag was seen by them alone: on which side of it the tag is now is not known. Their
-/// numbers.
+/// Indices of the anchors in whose line, or plane, a tag was seen by them alone: on which side of it the tag is now is
+/// unknown.
 pub(crate) type Mirror<const D: usize> = SVector<u16, D>;
 
-/// The anchors heard (their numbers and ranges, m), if they are as many as coordinates, and the tag may be in their line.
+/// The mirror of the anchors heard (indices and ranges, m), if there are D of them and the tag may be in their line.
 ///
-/// Beside the line by d, a range of length r is longer than on it by d²/(2 r) alone: a constant error of b looks like
-/// √(2 r b). As much, and the position's own deviation, may be between the tag and where it seems to be.
+/// At a distance d from the line, a range of length r is longer than on it by only d²/(2 r): a constant error b looks
+/// like √(2 r b). The tag may be this far, plus the position's own uncertainty, from its apparent position.
 pub(crate) fn reached<T: Scalar, const D: usize, const N: usize>(
     estimate: &Gaussian<T, N>,
     config: &Config<T>,
@@ -35,7 +36,7 @@ pub(crate) fn reached<T: Scalar, const D: usize, const N: usize>(
 ) -> Option<Mirror<D>> {
     let mut mirror = Mirror::<D>::zeros();
     let (mut count, mut far) = (0, T::ZERO);
-    // Not `for`, of which a filter makes two loops.
+    // Not `for`, which a filter compiles to two loops.
     heard.for_each(|(anchor, range)| {
         if let Some(place) = mirror.as_array_mut().get_mut(count) {
             *place = anchor as u16;
@@ -52,16 +53,16 @@ pub(crate) fn reached<T: Scalar, const D: usize, const N: usize>(
     (distance <= bent + spread(estimate)).then_some(mirror)
 }
 
-/// Anchors through which a line goes, or a plane, in which all are: none if one of them tells its two sides apart.
-#[inline(never)] // Once a tracker.
+/// Anchors that define the line or plane in which all anchors lie; `None` if one of them distinguishes its two sides.
+#[inline(never)] // Called once per tracker.
 pub(crate) fn flat<T: Scalar, const D: usize>(links: &[Link<T>]) -> Option<Mirror<D>> {
     let mut chosen = Mirror::<D>::zeros();
-    // The farthest from those that were chosen before makes it least uncertain.
+    // The anchor farthest from those chosen before makes the line or plane most certain.
     for count in 1..=D {
         let farthest = outside::<T, D>(chosen.as_array().get(..count)?, links);
         match (chosen.as_array_mut().get_mut(count), farthest) {
             (Some(next), Some(anchor)) => *next = anchor,
-            // A plane through anchors that are almost in a line is none to be behind.
+            // A plane through nearly collinear anchors is too uncertain to mirror at.
             (None, None) => {
                 return across(&chosen, links, &SVector::<T, D>::zeros()).map(|_| chosen);
             }
@@ -71,8 +72,8 @@ pub(crate) fn flat<T: Scalar, const D: usize>(links: &[Link<T>]) -> Option<Mirro
     None
 }
 
-/// The anchor that is farthest outside of the line, or plane, through some; none if all are in it.
-#[inline(never)] // Asked for a few times: one copy is enough.
+/// The anchor farthest from the line or plane through some others; `None` if all lie in it.
+#[inline(never)] // Called a few times: one copy is enough.
 fn outside<T: Scalar, const D: usize>(chosen: &[u16], links: &[Link<T>]) -> Option<u16> {
     let (mut far, mut farthest) = (T::from_f64(FLAT), None);
     for (anchor, link) in links.iter().enumerate() {
@@ -85,14 +86,15 @@ fn outside<T: Scalar, const D: usize>(chosen: &[u16], links: &[Link<T>]) -> Opti
     farthest
 }
 
-/// As far as the tag may be from where it seems to be, m.
+/// Largest distance of the tag from its apparent position, m.
 pub(crate) fn spread<T: Scalar, const N: usize>(estimate: &Gaussian<T, N>) -> T {
     let variances = estimate.covariance.variances();
     let variance = variances.iter().take(N / 2).fold(T::ZERO, |sum, &variance| sum + variance);
     variance.sqrt() * T::from_f64(REACH)
 }
 
-/// From the place behind the line, or plane, to this one, m; none where the anchors make none.
+/// Vector from the mirror image behind the line or plane to the position, m; `None` where the anchors define no line
+/// or plane.
 pub(crate) fn across<T: Scalar, const D: usize>(
     mirror: &Mirror<D>,
     links: &[Link<T>],
@@ -102,7 +104,7 @@ pub(crate) fn across<T: Scalar, const D: usize>(
     Some(beside + beside)
 }
 
-/// Whether a range that left this innovation (m, with its variance) tells that the tag is not at the other place.
+/// Whether a range with this innovation (m) and variance excludes the mirror image.
 pub(crate) fn tells<T: Scalar, const D: usize>(
     across: &SVector<T, D>,
     (position, height): (&SVector<T, D>, T),
@@ -114,13 +116,14 @@ pub(crate) fn tells<T: Scalar, const D: usize>(
     there.abs() - innovation.abs() > variance.sqrt() * T::from_f64(CLEAR)
 }
 
-/// Where an anchor is in the tag's dimensions, m.
+/// Position of an anchor in the tag's dimensions, m.
 fn place<T: Scalar, const D: usize>(link: &Link<T>) -> SVector<T, D> {
     SVector::from_fn(|axis, _| link.anchor.position.as_array()[axis])
 }
 
-/// From the nearest point of the line, or plane, through these anchors to a place, m; of one anchor, from it.
-#[inline(never)] // Rare, and asked for in several places.
+/// Vector to a position from the nearest point of the line or plane through these anchors, m; with one anchor, from
+/// it.
+#[inline(never)] // Rare, and called from several places.
 fn beside<T: Scalar, const D: usize>(
     anchors: &[u16],
     links: &[Link<T>],
@@ -138,7 +141,7 @@ fn beside<T: Scalar, const D: usize>(
             remove(&mut side, known);
         }
         let rest = T::norm(side.as_array());
-        // They stand above each other, or in a line.
+        // They are above each other, or collinear.
         if rest <= (length * T::from_f64(0.05)).max(T::from_f64(NEAREST)) {
             return None;
         }
@@ -149,7 +152,7 @@ fn beside<T: Scalar, const D: usize>(
     Some(beside)
 }
 
-/// Takes away what of a vector is along a unit vector.
+/// Subtracts a vector's component along a unit vector.
 fn remove<T: Scalar, const D: usize>(from: &mut SVector<T, D>, unit: &SVector<T, D>) {
     let along = T::dot(from.as_array(), unit.as_array());
     for (one, other) in from.iter_mut().zip(unit) {

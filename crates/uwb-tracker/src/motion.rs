@@ -7,13 +7,13 @@ use kestirim_scalar::{Components, Scalar};
 /// Random walk of the common bias, m²/s.
 const BIAS_DENSITY: f64 = 1e-5;
 
-/// Beyond this speed, m/s, the density of the acceleration grows with its third power: who turns on the same radius r is accelerated
-/// by v²/r for about r/v.
+/// Speed (m/s) above which the acceleration density grows with the third power of the speed: turning on the same
+/// radius r means an acceleration of v²/r for about r/v.
 const USUAL_SPEED: f64 = 1.2;
-/// No further than at so many times that speed: fixed point has an end.
+/// Limit of the speed's ratio to `USUAL_SPEED` in that growth, as the range of fixed point is limited.
 const MOST_SPEED: f64 = 8.0;
 
-/// The density of a tag's acceleration, m²/s³, at its velocity.
+/// The acceleration density of a tag, m²/s³, at its velocity.
 #[inline]
 fn density<T: Scalar, const D: usize, const N: usize>(estimate: &Gaussian<T, N>, usual: T) -> T {
     let velocity = estimate.mean.as_array().get(D..2 * D).unwrap_or_default();
@@ -24,15 +24,15 @@ fn density<T: Scalar, const D: usize, const N: usize>(estimate: &Gaussian<T, N>,
     usual * faster(squared)
 }
 
-/// The third power of a speed's ratio to the usual one, from its square.
-#[inline(never)] // Of fast tags.
+/// The third power of the ratio of a speed to the usual one, from the squared speed.
+#[inline(never)] // Only for fast tags.
 fn faster<T: Scalar>(squared: T) -> T {
     let ratio = squared.sqrt() * T::from_f64(1.0 / USUAL_SPEED);
     let ratio = ratio.min(T::from_f64(MOST_SPEED));
     ratio * ratio * ratio
 }
 
-/// Moves the estimate on by `interval` (s).
+/// Predicts the estimate over `interval` (s).
 #[inline]
 pub(crate) fn advance<T: Scalar, const D: usize, const N: usize>(
     estimate: &mut Gaussian<T, N>,
@@ -61,7 +61,7 @@ mod tests {
     use kestirim_kalman::Covariance;
     use nalgebra::SVector;
 
-    /// Ten seconds of a tag that moved by 1 m/s in every direction.
+    /// The estimate after ten seconds, of a tag that moved at 1 m/s along every axis.
     fn advanced<const D: usize, const N: usize>(still: bool) -> Gaussian<f64, N> {
         let mean = SVector::from_fn(|state, _| f64::from(u8::from((D..2 * D).contains(&state))));
         let mut estimate = Gaussian::new(mean, Covariance::zero());

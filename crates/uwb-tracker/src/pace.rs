@@ -1,43 +1,43 @@
-/// How often ranges come, and so how old one may be that is still used.
+/// The rate at which ranges arrive, which determines how old a range may be to be used.
 ///
-/// A radio that asks six anchors in turn, five times in two seconds, hears each every 2.6 s: a second, which is right where
-/// ranges come in dozens, would never see three of them together.
+/// A radio that polls six anchors in turn, with five ranges in two seconds, hears each every 2.6 s: with a limit of
+/// one second, which is right where ranges come in dozens, three of them would never be fresh together.
 ///
-/// Times are of 32 bits, because each range goes through here: they go round after 71 minutes.
+/// Times have 32 bits, because each range is processed here: they wrap after 71 minutes.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Pace {
-    /// Time of the newest range (µs).
+    /// Time of the newest range, µs.
     newest_us: u32,
-    /// Mean time between two ranges of any anchors (µs), mostly over the last sixteen; 0 before the second.
+    /// Mean time between two ranges of any anchors, mostly over the last sixteen, µs; 0 before the second range.
     mean_us: u32,
-    /// Number of ranges within which one of each anchor is fresh.
+    /// Number of successive ranges within which each anchor's is fresh.
     fresh: u32,
     /// Anchor of the last range that was collected for a first position.
     last: Option<usize>,
 }
 
 impl Pace {
-    /// Age up to which a range is always used (µs), …
+    /// Age up to which a range is always used, µs.
     const LEAST_US: u32 = 1_000_000;
-    /// … and beyond which it never is.
+    /// Age beyond which a range is never used, µs.
     pub(crate) const MOST_US: u32 = 8_000_000;
-    /// An outage is not slowness: a longer interval counts as this one (µs).
+    /// Limit of the interval between ranges, µs: an outage does not mean a slow radio.
     const LONGEST_US: u32 = 2_000_000;
-    /// A fast radio lets less than this pass between two ranges (µs).
+    /// Largest interval between two ranges of a fast radio, µs.
     const FAST_US: u32 = 110_000;
-    /// So many rounds of all anchors are fresh: one may be missed.
+    /// Number of rounds of all anchors that are fresh: one may be missed.
     const ROUNDS: u32 = 2;
-    /// No range yet.
+    /// Marks the state before the first range.
     const NEVER_US: u32 = u32::MAX / 2;
 
-    /// Before the first range of so many anchors.
+    /// Creates the state before the first range, for this number of anchors.
     pub(crate) const fn new(anchors: usize) -> Self {
         let fresh = (anchors as u32).saturating_mul(Self::ROUNDS);
         Self { newest_us: Self::NEVER_US, mean_us: 0, fresh, last: None }
     }
 
-    /// Takes notice of a range.
+    /// Records the arrival of a range.
     #[inline(always)]
     pub(crate) fn hear(&mut self, time_us: u64) {
         let interval_us = (time_us as u32).wrapping_sub(self.newest_us);
@@ -49,11 +49,11 @@ impl Pace {
         }
     }
 
-    /// The first range, one after an outage, or one that is older than the newest.
+    /// Records the first range, one after an outage, or one that is older than the newest.
     #[inline(never)] // Rare.
     fn hear_apart(&mut self, time_us: u32) {
         let is_first = self.newest_us == Self::NEVER_US;
-        // What is older than any range that is used is not late: there was an outage of most of the clock's round.
+        // A range older than any that is used is not late: the outage lasted for most of the clock's period.
         let is_newer = self.newest_us.wrapping_sub(time_us) > Self::MOST_US;
         if !is_first {
             self.learn(if is_newer { Self::LONGEST_US } else { 0 });
@@ -72,20 +72,20 @@ impl Pace {
         };
     }
 
-    /// Takes notice of a range that is collected for a first position; whether the one before was another anchor's: some
-    /// radios ask each twice.
+    /// Records a range that is collected for a first position. Returns whether the previous one was of another anchor:
+    /// some radios poll each anchor twice.
     pub(crate) fn collect(&mut self, time_us: u64, anchor: usize) -> bool {
         self.hear(time_us);
         self.last.replace(anchor) != Some(anchor)
     }
 
-    /// How many times as long as with a fast radio the next range lets wait: a search that is not done within seconds would begin
-    /// again and again.
+    /// Factor by which the time until the next range exceeds that of a fast radio: a search that is not finished
+    /// within seconds would restart again and again.
     pub(crate) fn leisure(&self) -> usize {
         1 + (self.mean_us / Self::FAST_US).min(20) as usize
     }
 
-    /// Age beyond which a range is not used (µs).
+    /// Age beyond which a range is not used, µs.
     #[inline]
     pub(crate) fn fresh_us(&self) -> u64 {
         let rounds_us = self.mean_us.saturating_mul(self.fresh);
@@ -97,7 +97,7 @@ impl Pace {
 mod tests {
     use super::Pace;
 
-    /// The pace of six anchors that are heard in turn, at these times (µs).
+    /// The pace of six anchors heard in turn, at these times (µs).
     fn heard(times_us: impl IntoIterator<Item = u64>) -> Pace {
         let mut pace = Pace::new(6);
         times_us.into_iter().for_each(|time_us| pace.hear(time_us));
@@ -123,7 +123,7 @@ mod tests {
     fn another_pace_is_learnt_in_sixteen_ranges() {
         let (quick, slow) = ((1..50).map(|k| k * 100_000), (1..=16).map(|k| k * 600_000));
         let pace = heard(quick.chain(slow.map(|us| us + 4_900_000)));
-        // Of the way from 1.2 to 7.2 s the share 1 − 1/e or a little more.
+        // 1 − 1/e of the way from 1.2 to 7.2 s, or slightly more.
         let learnt = (pace.fresh_us() as f64 - 1.2e6) / 6e6;
         assert!((0.6..0.7).contains(&learnt), "{learnt}");
     }
@@ -135,7 +135,7 @@ mod tests {
             let pace = heard(times_us.into_iter().chain([800_000 + outage_us]));
             // A sixteenth of the way from 0.4 to 2 s.
             assert_eq!(pace.fresh_us(), 6_000_000, "{outage_us} µs");
-            // It goes on from there.
+            // It continues from there.
             let end_us = 800_000 + outage_us;
             let pace = heard(times_us.into_iter().chain([end_us, end_us + 500_000]));
             assert_eq!(pace.fresh_us(), 6_000_000, "{outage_us} µs");
@@ -148,9 +148,9 @@ mod tests {
         assert_eq!(late.fresh_us(), 4_500_000);
         let times_us = [8_000_000, 8_400_000, 8_800_000];
         assert_eq!(heard(times_us.into_iter().chain([800_000])).fresh_us(), 4_500_000);
-        // Nothing is used that is older.
+        // Older ranges are not used at all.
         assert_eq!(heard(times_us.into_iter().chain([799_999])).fresh_us(), 6_000_000);
-        // The next is that of the newest.
+        // The next interval is counted from the newest range.
         let next = heard([0, 400_000, 800_000, 500_000, 1_175_000]);
         assert_eq!(next.fresh_us(), 4_500_000);
     }

@@ -1,4 +1,4 @@
-//! The paper's adaptive filter, equation by equation, with an epoch of all anchors at a time.
+//! The paper's adaptive filter, equation by equation, with one epoch of all anchors at a time.
 
 use crate::{Anchor, EpochMethod, EpochSolver, Error, RangeSample};
 use kestirim_adaptive_kalman::{Error as Refusal, PublishedAdaptiveKalman};
@@ -12,23 +12,23 @@ use nalgebra::{SMatrix, SVector};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PublishedConfig<T: Scalar, const D: usize> {
-    /// The first position, m; without one the filter begins at its first trilateration.
+    /// The first position, m; if `None`, the filter starts from its first trilateration.
     pub start: Option<SVector<T, D>>,
-    /// Height of the tag in two dimensions, m.
+    /// Height of the tag, m, for a position in two dimensions.
     pub height: T,
-    /// Variance of the first position, m²; the first velocity is zero, and certain.
+    /// Variance of the first position, m²; the first velocity is zero, with zero variance.
     pub position_variance: T,
-    /// Variance that each state gains a step, m² and (m/s)².
+    /// Process noise variance of each state per step, m² and (m/s)².
     pub process_variance: T,
-    /// Variance of a range to begin with, m².
+    /// Initial variance of a range, m².
     pub range_variance: T,
-    /// Forgetting factor of eqs 18 and 19; 1 adapts nothing and leaves the plain filter.
+    /// Forgetting factor of eqs 18 and 19; 1 disables adaptation and leaves the plain filter.
     pub forgetting: T,
 }
 
 impl<T: Scalar, const D: usize> PublishedConfig<T, D> {
-    /// Settings with which biased ranges give the paper's table, if the filter is started at the truth. With
-    /// everyday ones eq. 18 makes R indefinite.
+    /// Settings with which biased ranges reproduce the paper's table, if the filter is started at the truth. With
+    /// usual settings, eq. 18 makes R indefinite.
     pub fn adaptive(height: T) -> Self {
         Self {
             start: None,
@@ -40,33 +40,33 @@ impl<T: Scalar, const D: usize> PublishedConfig<T, D> {
         }
     }
 
-    /// The same without adaptation.
+    /// The settings of [`PublishedConfig::adaptive`] without adaptation.
     pub fn plain(height: T) -> Self {
         Self { forgetting: T::ONE, ..Self::adaptive(height) }
     }
 }
 
-/// Outcome of an epoch.
+/// The outcome of an epoch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum PublishedOutcome {
-    /// The epoch goes on, as not every anchor has been heard.
+    /// The epoch continues, as not every anchor has been heard.
     Incomplete,
-    /// The ranges determine no first position.
+    /// The ranges do not determine a first position.
     NoPosition(NoPosition),
-    /// The epoch gave the first position.
+    /// The epoch provided the first position.
     Started,
-    /// The epoch was taken in.
+    /// The epoch was used.
     Taken,
-    /// A step of the filter was refused, as when eq. 18 has made R indefinite: its ranges are left out.
+    /// A step of the filter was refused, as when eq. 18 has made R indefinite: its ranges are discarded.
     Refused(Refusal),
 }
 
-/// The paper's filter of N states in D dimensions for A anchors. **Unsafe to navigate by**: see
+/// The paper's filter with N states in D dimensions for A anchors. **Unsafe for navigation**: see
 /// [`PublishedAdaptiveKalman`], and use [`Tracker`](crate::Tracker).
 ///
-/// The states are D coordinates (m) in the room's axes and their velocities (m/s): N = 2 D.
+/// The states are D coordinates (m) in the room frame and their velocities (m/s): N = 2 D.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -78,20 +78,20 @@ pub enum PublishedOutcome {
 )]
 pub struct PublishedTracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     config: PublishedConfig<T, D>,
-    /// The anchors' ranges, and the first position.
+    /// The anchors' ranges, and the solver for the first position.
     ranges: EpochSolver<T, A>,
-    /// Anchors that were heard in this epoch.
+    /// Whether each anchor was heard in this epoch.
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     heard: [bool; A],
     filter: Option<PublishedAdaptiveKalman<T, N, A>>,
-    /// Time of the filter's estimate (µs).
+    /// Time of the filter's estimate, µs.
     time_us: u64,
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays::optional"))]
     push: Option<[T; D]>,
 }
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> PublishedTracker<T, D, N, A> {
-    /// A filter for these anchors, before its first position.
+    /// Creates a filter for these anchors, before its first position.
     ///
     /// # Errors
     /// [`Error::NotFinite`].
@@ -108,18 +108,18 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> PublishedTracker
         })
     }
 
-    /// Sets the tag's height in two dimensions, m.
+    /// Sets the height of the tag, m, for a position in two dimensions.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; the height is as it was.
+    /// [`Error::NotFinite`]; the height is unchanged.
     pub fn set_height(&mut self, height: T) -> Result<(), Error> {
         self.ranges.set_height(height)
     }
 
-    /// Keeps a range for the epoch that [`PublishedTracker::end_epoch`] ends.
+    /// Stores a range for the epoch that [`PublishedTracker::end_epoch`] ends.
     ///
     /// # Errors
-    /// As [`EpochSolver::range`].
+    /// Those of [`EpochSolver::range`].
     pub fn range(&mut self, sample: &RangeSample<T>) -> Result<(), Error> {
         let heard = self.heard.get_mut(sample.anchor).ok_or(Error::NoSuchAnchor)?;
         self.ranges.range(sample)?;
@@ -127,14 +127,14 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> PublishedTracker
         Ok(())
     }
 
-    /// Sets the acceleration without gravity in the room's axes (m/s²) that drives the predictions from now on
-    /// (the paper's eq. 9).
+    /// Sets the acceleration without gravity in the room frame (m/s²) that drives the predictions from now on (the
+    /// paper's eq. 9).
     pub fn push(&mut self, push: Option<[T; D]>) {
         self.push = push;
     }
 
-    /// Ends the epoch at `time_us` (µs since the same moment as the ranges): when every anchor was heard, its
-    /// ranges make the first position or are taken in at once.
+    /// Ends the epoch at `time_us` (µs since the same epoch as the ranges): when every anchor was heard, the ranges
+    /// determine the first position, or update the filter together.
     pub fn end_epoch(&mut self, time_us: u64) -> PublishedOutcome {
         if !self.heard.iter().all(|&heard| heard) {
             return PublishedOutcome::Incomplete;
@@ -164,13 +164,13 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> PublishedTracker
         }
     }
 
-    /// Position of the tag, m; none before the first one.
+    /// Position of the tag, m; `None` before the first one.
     pub fn position(&self) -> Option<SVector<T, D>> {
         let estimate = self.estimate()?;
         Some(SVector::from_fn(|axis, _| estimate.mean.as_array()[axis]))
     }
 
-    /// Mean and covariance of all states; none before the first position.
+    /// Mean and covariance of all states; `None` before the first position.
     pub fn estimate(&self) -> Option<&Gaussian<T, N>> {
         self.filter.as_ref().map(PublishedAdaptiveKalman::estimate)
     }
@@ -192,7 +192,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> PublishedTracker
         )
     }
 
-    /// Predicts over `elapsed_us` (µs) and takes in the ranges of all anchors; a prediction stays where the
+    /// Predicts over `elapsed_us` (µs) and updates with the ranges of all anchors; the prediction remains if the
     /// ranges are refused.
     fn step(
         &self,

@@ -8,20 +8,20 @@ use nalgebra::SVector;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RangeSample<T> {
-    /// Time of the measurement (µs since any moment).
+    /// Time of the measurement, µs since any epoch.
     pub time_us: u64,
-    /// Index of its anchor in the list that the tracker was made with.
+    /// Index of the anchor in the list with which the tracker was created.
     pub anchor: usize,
-    /// The distance, m; small negative ones are accepted.
+    /// The distance, m; small negative values are accepted.
     pub range: T,
 }
 
 impl<T: Scalar> RangeSample<T> {
-    /// Bounds of what a radio measures, m.
+    /// Limits of a plausible range, m.
     const SHORTEST: f64 = -1.0;
     const LONGEST: f64 = 200.0;
 
-    /// Refuses what no radio measures.
+    /// Checks that the range is one that a radio can measure.
     #[inline]
     pub(crate) fn check(&self) -> Result<(), Error> {
         let plausible = T::from_f64(Self::SHORTEST)..=T::from_f64(Self::LONGEST);
@@ -32,21 +32,21 @@ impl<T: Scalar> RangeSample<T> {
     }
 }
 
-/// By how much one anchor is farther than another.
+/// The difference of a tag's distances to two anchors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DifferenceSample<T> {
-    /// When the message of the second anchor was received (µs since any moment).
+    /// Time at which the message of the second anchor was received, µs since any epoch.
     pub time_us: u64,
-    /// Indices of two anchors in the list that the tracker was made with.
+    /// Indices of the two anchors in the list with which the tracker was created.
     pub anchors: [usize; 2],
-    /// Distance to the second less distance to the first, m.
+    /// Distance to the second anchor minus distance to the first, m.
     pub difference: T,
 }
 
 impl<T: Scalar> DifferenceSample<T> {
-    /// Refuses what no radio measures.
+    /// Checks that the difference is one that a radio can measure.
     pub(crate) fn check(&self) -> Result<(), Error> {
         if self.difference.abs() <= T::from_f64(RangeSample::<T>::LONGEST) {
             return Ok(());
@@ -60,27 +60,27 @@ impl<T: Scalar> DifferenceSample<T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct InertialSample<T: Scalar, const D: usize> {
-    /// Time of the measurement (µs since the same moment as the ranges).
+    /// Time of the measurement, µs since the same epoch as the ranges.
     pub time_us: u64,
-    /// Acceleration in the body's axes, with or without gravity, m/s². From the energy of its
-    /// changes the tracker tells standing from moving.
+    /// Acceleration in the body frame, with or without gravity, m/s². From the energy of its changes the tracker
+    /// distinguishes standing from moving.
     pub acceleration: SVector<T, 3>,
-    /// The acceleration without gravity in the room's axes, m/s², if the prediction is to be driven by
-    /// it (the paper's eq. 9). For a slow robot that does more harm than good.
+    /// The acceleration without gravity in the room frame, m/s², if it is to drive the prediction (the paper's eq. 9).
+    /// For a slow robot that does more harm than good.
     pub push: Option<[T; D]>,
 }
 
-/// Sample of the wheels.
+/// Sample of wheel odometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OdometrySample<T> {
-    /// Time of the measurement (µs since the same moment as the ranges).
+    /// Time of the measurement, µs since the same epoch as the ranges.
     pub time_us: u64,
     /// Mean speed of the wheels, m/s.
     pub speed: T,
-    /// Difference of their speeds by the track, or the rate of a gyroscope beside them, rad/s. [`Tracker`](crate::Tracker)
-    /// only reads from it whether the robot turns.
+    /// Turn rate: the difference of the wheels' speeds over the track, or the rate of a gyroscope, rad/s.
+    /// [`Tracker`](crate::Tracker) only uses it to detect whether the robot turns.
     pub turn_rate: T,
 }
 
@@ -89,28 +89,30 @@ pub struct OdometrySample<T> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Outcome {
-    /// The range is kept for a first position, for which more are needed, or which is looked for with each.
+    /// The range is stored for a first position, which needs more ranges, or is being searched for, a few steps per
+    /// range.
     Collected,
-    /// With this range a first position was found, or a new one after the tracker was lost, from those of a moment or so ago.
+    /// With this range a first position was found, or a new one after the tracker was lost; the ranges it is from may
+    /// be slightly older.
     Started,
-    /// The range was taken in with its full weight.
+    /// The range was used with its full weight.
     Taken,
-    /// The range was taken in with less weight: it is longer or shorter than expected.
+    /// The range was used with a reduced weight: it is longer or shorter than expected.
     Weakened,
-    /// The range was left out.
+    /// The range was rejected.
     Rejected,
-    /// The range was taken in although it does not fit: too many had been left out.
+    /// The range was used although it does not fit: too many had been rejected.
     Recovered,
 }
 
-/// Outcome of a range, and its innovation.
+/// The outcome of a range, and its innovation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Report<T> {
-    /// Its outcome.
+    /// What was done with the range.
     pub outcome: Outcome,
-    /// Innovation (m), its variance and NIS, before any weakening; none without an estimate.
+    /// Innovation (m), its variance and NIS, before any down-weighting; `None` without an estimate.
     pub innovation: Option<Innovation<T>>,
 }
 

@@ -1,4 +1,4 @@
-//! What stored estimators are. Raise the version of one that is stored otherwise than before.
+//! Snapshot layouts of the trackers. Raise the version of a tracker whose stored form changes.
 
 use crate::{
     DifferenceTracker, EpochSolver, HeightFinder, PublishedTracker, Tracker, WheelTracker,

@@ -1,4 +1,5 @@
-//! A first position, or a new one: looked for in a few steps with each range, so that no range takes much longer than another.
+//! The search for a first or new position, a few steps with each range, so that no range takes much longer than
+//! another.
 
 use crate::Config;
 use crate::link::Link;
@@ -8,32 +9,32 @@ use kestirim_scalar::{Columns, Components, Scalar};
 use kestirim_uwb_ranging::{Fix, Observation, Search, Solver, expected_range};
 use nalgebra::{SMatrix, SVector};
 
-/// Standard deviation that biases add to the fit's, m.
+/// Standard deviation that biases add to the fix's, m.
 const POSITION_SIGMA: f64 = 0.1;
-/// Standard deviation of the velocity of a tag when it is first heard, m/s.
+/// Initial standard deviation of each component of a tag's velocity, m/s.
 const VELOCITY_SIGMA: f64 = 0.5;
 
-/// Farther than this a tag is not taken to have moved, m: fixed point needs variances that are not too different.
+/// Largest distance that a tag is assumed to have moved, m: fixed point needs variances that do not differ too much.
 const FARTHEST: f64 = 1.0;
-/// Share by which the fit's variances grow: of poor geometries fixed point does not find them better.
+/// Share by which the variances of the fix are increased: with poor geometries fixed point is no more accurate.
 const ROUNDING: f64 = 1.0 / 64.0;
 
-/// Largest cost of a fit; one that costs more has an outlier among its ranges: three standard
-/// deviations a range cost 3.
+/// Largest cost of a fix; a larger one indicates an outlier among its ranges: three standard deviations per range cost
+/// 3.
 const LARGEST_COST: f64 = 12.0;
 
-/// After so many ranges without a position, ranges that contradict each other are accepted, too.
+/// Number of ranges without a position after which contradictory ranges are accepted, too.
 const MOST_TRIES: u8 = 20;
 
-/// Residuals that a range has time for beside its own: of four anchors in five steps, of eight in two. Slow radios leave
+/// Number of residuals computed per range: five steps with four anchors, two with eight. Slow radios allow
 /// [more](crate::pace::Pace::leisure).
 const WORK: usize = 20;
-/// Age of the ranges beyond which the tag may be anywhere (µs).
+/// Age of the ranges beyond which the tag may be anywhere, µs.
 const LONGEST_US: u64 = 3_000_000;
 
-/// The search for a position of D coordinates among up to A anchors.
+/// The search for a position with D coordinates among up to A anchors.
 ///
-/// An attempt is made with the ranges that are fresh at one moment; what is heard while it goes on is for the next.
+/// An attempt uses the ranges that are fresh at one time; those that arrive during it are for the next.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -44,47 +45,48 @@ const LONGEST_US: u64 = 3_000_000;
     ))
 )]
 pub(crate) struct Start<T: Scalar, const D: usize, const A: usize> {
-    /// The moment (µs).
+    /// Time of the attempt, µs.
     time_us: u64,
-    /// The ranges that were fresh then; none at all between two attempts.
+    /// The ranges that were fresh then; empty between two attempts.
     observations: Vec<Observation<T>, A>,
     search: Search<T, D>,
-    /// Whether the last of them is left out, because all have contradicted each other.
+    /// Whether the last of the observations is left out, because all together were contradictory.
     leaves_out: bool,
-    /// Ranges since the first attempt began.
+    /// Number of ranges since the first attempt began.
     tries: u8,
 }
 
-/// A position that was found, and when the tag was there (µs).
+/// A position that was found, and the time (µs) to which it applies.
 pub(crate) struct Begun<T: Scalar, const N: usize> {
     pub(crate) estimate: Gaussian<T, N>,
     pub(crate) time_us: u64,
 }
 
-/// What an attempt has come to.
+/// The progress of an attempt.
 enum Progress<T: Scalar, const D: usize> {
     /// There are more steps to take.
     Unfinished,
-    /// The ranges make this position.
+    /// The ranges determine this position.
     Found(Fix<T, D>),
-    /// They make none.
+    /// The ranges determine no position.
     Nothing,
 }
 
 impl<T: Scalar, const D: usize, const A: usize> Start<T, D, A> {
-    /// Before the first range.
+    /// Creates the state before the first range.
     pub(crate) fn new() -> Self {
         let search = Search::new(None);
         Self { time_us: 0, observations: Vec::new(), search, leaves_out: false, tries: 0 }
     }
 
-    /// Whether an attempt goes on.
+    /// Whether an attempt is in progress.
     pub(crate) fn is_on(&self) -> bool {
         !self.observations.is_empty()
     }
 
-    /// Takes some steps, now that another range was heard; an attempt begins where that `may` be. The estimate that its ranges
-    /// make, if they agree with each other, or all but one that is too long, or after many ranges even if they do not.
+    /// Takes some steps after another range was heard, and starts an attempt if it `may`. Returns the estimate from
+    /// the attempt's ranges if they are consistent, or all but one that is too long, or after many ranges even if they
+    /// are not.
     pub(crate) fn go_on<const N: usize>(
         &mut self,
         config: &Config<T>,
@@ -124,7 +126,7 @@ impl<T: Scalar, const D: usize, const A: usize> Start<T, D, A> {
         Some(Begun { estimate: estimate(config, &fix)?, time_us: self.time_us })
     }
 
-    /// Begins an attempt with the ranges that are fresh now.
+    /// Starts an attempt with the ranges that are fresh now.
     fn begin(&mut self, config: &Config<T>, links: &[Link<T>], (time_us, fresh_us): (u64, u64)) {
         let variance = config.range_sigma * config.range_sigma;
         for link in links {
@@ -133,14 +135,14 @@ impl<T: Scalar, const D: usize, const A: usize> Start<T, D, A> {
             let age = T::from_micro(age_us.min(fresh_us) as i32);
             let moved = (age * T::from_f64(VELOCITY_SIGMA)).min(T::from_f64(FARTHEST));
             let (anchor, variance) = (link.anchor.position, variance + moved * moved);
-            // There are no more links than places.
+            // There are no more links than the capacity.
             let _ = self.observations.push(Observation { anchor, range, variance });
         }
         (self.time_us, self.leaves_out, self.search) = (time_us, false, Search::new(None));
     }
 
-    /// Takes as many steps as a range has time for. Where all ranges contradict each other, the attempt goes on without the
-    /// longest, unless they are accepted all the same.
+    /// Takes as many steps as there is time for with a range. If the ranges are contradictory, the attempt continues
+    /// without the longest, unless they are accepted anyway.
     fn advance(&mut self, solver: &Solver<T>, work: usize, accepts_all: bool) -> Progress<T, D> {
         let count = self.observations.len().saturating_sub(usize::from(self.leaves_out));
         let observations = self.observations.get(..count).unwrap_or_default();
@@ -158,7 +160,7 @@ impl<T: Scalar, const D: usize, const A: usize> Start<T, D, A> {
         if agrees || accepts_all {
             return Progress::Found(fix);
         }
-        // What is left must have a range to spare, without which there is nothing to tell.
+        // The remaining ranges must be redundant, otherwise they cannot be checked.
         if count <= D + 1 {
             return Progress::Nothing;
         }
@@ -166,7 +168,7 @@ impl<T: Scalar, const D: usize, const A: usize> Start<T, D, A> {
         Progress::Unfinished
     }
 
-    /// Goes on without the range that is too long by most at a place, and from there.
+    /// Continues from a fix, without the range whose excess there is the largest.
     fn leave_out_longest(&mut self, solver: &Solver<T>, fix: &Fix<T, D>) {
         let (mut longest, mut found) = (T::MIN, 0);
         for (index, observation) in self.observations.iter().enumerate() {
@@ -184,7 +186,7 @@ impl<T: Scalar, const D: usize, const A: usize> Start<T, D, A> {
         self.search = Search::near(fix.position);
     }
 
-    /// Whether the range that is left out is far too long at a place.
+    /// Whether the range that is left out is far too long at the fix.
     fn is_blocked(&self, solver: &Solver<T>, fix: &Fix<T, D>) -> bool {
         self.observations.last().is_some_and(|observation| {
             let excess = excess(solver, fix, observation);
@@ -194,7 +196,7 @@ impl<T: Scalar, const D: usize, const A: usize> Start<T, D, A> {
     }
 }
 
-/// By how much a range is too long at a place, m.
+/// The excess of a range at a fix, m.
 #[inline(never)]
 fn excess<T: Scalar, const D: usize>(
     solver: &Solver<T>,
@@ -205,7 +207,7 @@ fn excess<T: Scalar, const D: usize>(
     observation.range - expected.distance - fix.common_bias
 }
 
-/// The estimate that begins with a fix.
+/// The initial estimate from a fix.
 fn estimate<T: Scalar, const D: usize, const N: usize>(
     config: &Config<T>,
     fix: &Fix<T, D>,

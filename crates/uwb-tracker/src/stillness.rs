@@ -1,12 +1,11 @@
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// Tells standing from moving by the energy of an accelerometer's changes.
+/// Distinguishes standing from moving by the energy of an accelerometer's changes.
 ///
-/// The acceleration's deviation from its own mean over the last half second is squared and averaged
-/// over the last 0.15 s. Whatever is constant, gravity or a bias, does not matter. A robot's wheels
-/// shake it by half a metre per second squared even at walking snails' pace; a standing one shows
-/// the sensor's noise.
+/// The acceleration's deviation from its own mean over the last half second is squared and averaged over the last 0.15
+/// s. Constants such as gravity or a bias do not matter. A robot's wheels shake it by half a metre per second squared
+/// even at a snail's pace; while it stands, only the sensor's noise remains.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Stillness<T: Scalar> {
@@ -14,22 +13,22 @@ pub(crate) struct Stillness<T: Scalar> {
     mean: SVector<T, 3>,
     variance: T,
     calm: bool,
-    /// When it was last jolted (µs); if it ever was.
+    /// Time of the last jolt (µs), if any.
     jolted_us: Option<u64>,
 }
 
 impl<T: Scalar> Stillness<T> {
-    /// Root mean square of the changes below which the tag stands, m/s².
+    /// Root mean square of the changes below which the tag counts as standing, m/s².
     const LIMIT: f64 = 0.3;
-    /// Time over which the mean is taken, s.
+    /// Time constant of the mean, s.
     const MEAN_TIME: f64 = 0.5;
-    /// Time over which the squares are averaged, s.
+    /// Time constant of the mean square, s.
     const SQUARE_TIME: f64 = 0.15;
-    /// Root mean square of the changes in a step, m/s².
+    /// Root mean square of the changes during a footstep, m/s².
     const JOLT: f64 = 1.0;
-    /// Time after a jolt before which nothing is believed to stand (µs): longer than a step.
+    /// Time after a jolt during which the tag does not count as standing, µs: longer than a footstep.
     const STEP_US: u64 = 700_000;
-    /// Longest gap between samples after which stillness is still known (µs).
+    /// Longest gap between samples after which stillness is still known, µs.
     const GAP_US: u64 = 500_000;
 
     pub(crate) fn new() -> Self {
@@ -50,8 +49,8 @@ impl<T: Scalar> Stillness<T> {
         self.calm && self.last_us.is_some_and(fresh) && self.jolted_us.is_none_or(settled)
     }
 
-    /// Takes in what the accelerometer shows and, where it is known, how strongly it is pushed: a steady push
-    /// looks like gravity, but is not rest.
+    /// Processes an accelerometer sample, with the magnitude of the push if it is known: a steady push looks like
+    /// gravity, but is not rest.
     #[inline]
     pub(crate) fn update(&mut self, time_us: u64, acceleration: &SVector<T, 3>, push: T) {
         let elapsed = self.last_us.map(|last_us| time_us.saturating_sub(last_us));
@@ -64,7 +63,7 @@ impl<T: Scalar> Stillness<T> {
         let deviation = acceleration - self.mean;
         let share = |time: T| dt / (time + dt);
         self.mean += deviation * share(T::from_f64(Self::MEAN_TIME));
-        // Beyond a few metres per second squared it moves, however much: the square stays in range.
+        // Above a few metres per second squared it moves, however much: the square stays in range.
         let size = T::norm(deviation.as_array()).min(T::TWO);
         self.variance += (size * size - self.variance) * share(T::from_f64(Self::SQUARE_TIME));
         let calm = self.variance < T::from_f64(Self::LIMIT * Self::LIMIT);
@@ -79,20 +78,20 @@ impl<T: Scalar> Stillness<T> {
 mod tests {
     use super::*;
 
-    /// A tag whose accelerometer is heard a hundred times a second.
+    /// A tag whose accelerometer is sampled a hundred times per second.
     struct Ride {
         stillness: Stillness<f64>,
         time_us: u64,
     }
 
     impl Ride {
-        /// One that has stood for two seconds.
+        /// A tag that has stood for two seconds.
         fn at_rest() -> Self {
             let ride = Self { stillness: Stillness::new(), time_us: 0 };
             ride.on(200, 0.0, 0.0)
         }
 
-        /// So many samples on, shaken by so much to and fro and pushed (m/s²).
+        /// Continues for this many samples, with an alternating shake and a push of these sizes (m/s²).
         fn on(mut self, samples: u64, shake: f64, push: f64) -> Self {
             for sample in 0..samples {
                 self.time_us += 10_000;
@@ -103,7 +102,7 @@ mod tests {
             self
         }
 
-        /// Whether it stands so long after the last sample (µs).
+        /// Whether it counts as standing at this time after the last sample (µs).
         fn stands_after(&self, later_us: u64) -> bool {
             self.stillness.is_still(self.time_us + later_us)
         }
@@ -142,7 +141,7 @@ mod tests {
 
     #[test]
     fn after_a_jolt_a_tag_does_not_stand_for_the_time_of_a_step() {
-        // Shaken by less, it stands as soon as the squares are forgotten.
+        // Shaken by less, it counts as standing as soon as the squares are forgotten.
         assert!(Ride::at_rest().on(100, 0.9, 0.0).on(45, 0.0, 0.0).stands_after(0));
         let jolted = || Ride::at_rest().on(100, 1.2, 0.0);
         assert!(!jolted().on(70, 0.0, 0.0).stands_after(0));
@@ -162,7 +161,7 @@ mod tests {
         for (samples, stands) in [(20, false), (280, true)] {
             for _ in 0..samples {
                 ride.time_us += 10_000;
-                // It was put on its side.
+                // It was turned on its side.
                 ride.stillness.update(ride.time_us, &SVector::from([9.8, 0.0, 0.0]), 0.0);
             }
             assert_eq!(ride.stands_after(0), stands, "after {samples} samples");

@@ -1,26 +1,28 @@
-//! How a range is weighed, judged, taken in and learnt from: the same for every tracker.
+//! Weighting, gating, update and learning for a range, common to all trackers.
 
 use crate::link::Link;
 use crate::{Config, Error, Outcome};
 use kestirim_kalman::{Gaussian, Innovation, Observation, Verdict, Weighed};
 use kestirim_scalar::Scalar;
 
-/// What is known of a range beside its value.
+/// What is known about a range besides its value.
 #[derive(Clone, Copy)]
 pub(crate) struct Known {
     /// Whether there are more ranges than unknowns.
     pub(crate) is_redundant: bool,
-    /// Whether IMU or wheels say that the tag stands.
+    /// Whether the IMU or the wheels indicate that the tag stands.
     pub(crate) is_still: bool,
 }
 
-/// Takes a range in, or leaves it out. Ranges that are too long again and again are those of an anchor that is blocked
-/// where the others agree, and else of an estimate that is wrong. The anchor's noise is learnt where there are more ranges than unknowns
-/// (`is_redundant`): a range that the estimate has to follow fits whatever it is worth. While IMU or wheels say that the tag stands (`is_still`) it is
-/// not learnt to be worse than to begin with: what ranges leave then tells first of all whether it stands.
+/// Updates the estimate with a range, or rejects it.
+///
+/// Ranges that are too long again and again mean a blocked anchor if the others are consistent, and otherwise a wrong
+/// estimate. The anchor's noise is learnt where there are more ranges than unknowns (`is_redundant`): a range that the
+/// estimate must follow fits whatever its quality. While IMU or wheels indicate that the tag stands (`is_still`), the
+/// noise is not raised above its initial value: the residuals then mainly show whether it does stand.
 ///
 /// # Errors
-/// [`Error::Estimate`]; estimate and link are as they were.
+/// [`Error::Estimate`]; estimate and link are unchanged.
 #[inline(always)]
 pub(crate) fn take_in<T: Scalar, const N: usize>(
     estimate: &mut Gaussian<T, N>,
@@ -53,7 +55,7 @@ pub(crate) fn take_in<T: Scalar, const N: usize>(
             (Outcome::Rejected, believed)
         }
         Verdict::Recover => {
-            // Fixed point cannot widen without end; then the estimate is given up sooner or later.
+            // Fixed point limits the widening; then the estimate is given up sooner or later.
             let widened = estimate.correct_widened(&weighed, gate.gamma()).is_ok();
             (if widened { Outcome::Recovered } else { Outcome::Rejected }, believed)
         }
@@ -69,17 +71,17 @@ pub(crate) fn take_in<T: Scalar, const N: usize>(
     Ok((outcome, seen))
 }
 
-/// The noise that Huber gives a range beyond his threshold: S grows to S |ν|/limit.
+/// The noise that Huber's weight gives a range beyond the threshold: S grows to S |ν|/limit.
 ///
-/// What is too long is doubted sooner than what is too short, because of what may be in the way; but not for what the
-/// tag itself may have done since it was last seen, which is as likely to lengthen as to shorten. So the limit is at k√R and
-/// no less than one deviation of the expected range.
+/// Ranges that are too long are doubted sooner than those that are too short, because of obstacles; but not for what
+/// the tag itself may have done since it was last seen, which is as likely to lengthen as to shorten. So the limit is
+/// k√R and at least one standard deviation of the expected range.
 #[inline(always)]
 fn weakened<T: Scalar, const N: usize>(weighed: &Weighed<T, N>, config: &Config<T>) -> Option<T> {
     let huber = config.huber.as_ref()?;
     let threshold = huber.threshold(weighed.innovation());
     let square = threshold * threshold;
-    // The limit is no less than this; most ranges are within it.
+    // The limit is at least this; most ranges are within it.
     if !weighed.exceeds(square) {
         return None;
     }
@@ -102,7 +104,7 @@ mod tests {
 
     const MOVING: Known = Known { is_redundant: true, is_still: false };
 
-    /// Variance of the position before, and of a range, m².
+    /// Variances of the prior position and of a range, m².
     const SPREAD: f64 = 0.03;
     const NOISE: f64 = 0.01;
     const DEVIATION: f64 = 0.2;
@@ -115,8 +117,8 @@ mod tests {
         Link::new(Anchor { position: SVector::zeros(), bias: 0.0 }, config)
     }
 
-    /// A range along the first axis, which is so much longer than expected, as judged by `link` among others that `agree`:
-    /// the outcome, and how far it moved the estimate (m).
+    /// Processes a range along the first axis that is longer than expected by `excess`, with this `link` and whether
+    /// others `agree`: the outcome, and the resulting change of the estimate (m).
     fn taken(
         link: &mut Link<f64>,
         config: &Config<f64>,
@@ -134,7 +136,7 @@ mod tests {
         (outcome, estimate.mean[0] - 5.0)
     }
 
-    /// Without a gate.
+    /// A configuration with Huber's weights, without a gate.
     fn doubting() -> Config<f64> {
         let huber = Some(Huber { long: 0.5, short: 2.5 });
         Config { range_sigma: NOISE.sqrt(), huber, ..Config::plain(1.0) }
@@ -143,7 +145,7 @@ mod tests {
     #[test]
     fn beyond_its_limit_a_range_moves_an_estimate_no_farther() {
         let config = doubting();
-        // Too short: 2.5 deviations. Too long: half the radio's deviation, and one of the estimate.
+        // Too short: 2.5 standard deviations. Too long: half the radio's standard deviation, and one of the estimate.
         let long = (0.25 * NOISE + SPREAD).sqrt();
         for (limit, sign) in [(2.5 * DEVIATION, -1.0), (long, 1.0)] {
             let gain = SPREAD / (SPREAD + NOISE);
@@ -165,7 +167,7 @@ mod tests {
 
     #[test]
     fn a_range_of_no_more_doubt_than_its_noise_is_not_believed_more() {
-        // Nothing is known to spread, so that the limit is the radio's alone.
+        // The position has no variance, so that the limit is that of the radio alone.
         let config = doubting();
         let row = SparseRow::new([(0, 1.0)]);
         let known = Gaussian::new(vector![5.0, 0.0], Covariance::from_variances(&[0.0, 1.0]));
@@ -174,7 +176,7 @@ mod tests {
         assert!((noise - NOISE * 0.06 / 0.05).abs() < 1e-9, "{noise}");
     }
 
-    /// With a gate at five deviations, and learning.
+    /// A configuration with a gate at five standard deviations, and with learning.
     fn gated() -> Config<f64> {
         let config = Config::calibrated(1.0);
         Config { range_sigma: NOISE.sqrt(), huber: None, ..config }
@@ -207,7 +209,7 @@ mod tests {
         assert_eq!(taken(&mut link(&open), &open, 100.0, true).0, Outcome::Taken);
     }
 
-    /// What a single range makes of the variance of its anchor's.
+    /// The variance of an anchor's ranges after a single range.
     fn learnt(excess: f64, known: Known) -> f64 {
         let config = gated();
         let mut link = link(&config);
@@ -221,16 +223,16 @@ mod tests {
     #[test]
     fn an_anchors_noise_is_learnt_where_others_tell_the_place() {
         assert!((learnt(0.9, Known { is_redundant: false, ..MOVING }) - NOISE).abs() < 1e-12);
-        // A hundredth of what is left of the innovation, and of what the estimate does not know.
+        // A hundredth of the squared residual, and of the uncertainty of the estimate.
         let share = NOISE / (SPREAD + NOISE);
         let learns =
             |excess: f64| 0.99 * NOISE + 0.01 * ((excess * share).powi(2) + SPREAD * share);
         assert!((learnt(0.9, MOVING) - learns(0.9)).abs() < 1e-9);
-        // Of what is wild no more than the gate admits.
+        // An outlier counts no more than what the gate admits.
         for excess in [5.1 * DEVIATION, 100.0] {
             assert!((learnt(excess, MOVING) - learns(5.0 * DEVIATION)).abs() < 1e-9, "{excess}");
         }
-        // Of a tag that stands, as it is said, a range may be worth more than to begin with, but not less.
+        // While the tag is said to stand, a range may become better than at the beginning, but not worse.
         let standing = Known { is_still: true, ..MOVING };
         assert!((learnt(0.9, standing) - NOISE).abs() < 1e-12);
         assert!((learnt(0.0, standing) - learns(0.0)).abs() < 1e-9);
@@ -246,7 +248,7 @@ mod tests {
             link.noise.variance()
         };
         assert!(from(0.5 * NOISE, 0.0) < 0.5 * NOISE && from(0.5 * NOISE, 0.9) > 0.5 * NOISE);
-        // What was learnt of a bad anchor is not forgotten by standing.
+        // Noise learnt of a bad anchor is not forgotten while standing.
         assert!((from(4.0 * NOISE, 0.0) - 4.0 * NOISE).abs() < 1e-12);
     }
 }

@@ -1,4 +1,4 @@
-//! Many recordings of a system, a line each.
+//! Replays many recordings of a system into a table with a line each.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -15,20 +15,20 @@ use crate::system::{AnySystem, FileField, Files, Settings, Source, Wanted};
 use crate::text::command_line;
 use crate::{Error, output};
 
-/// A system's recordings, each with several sets of settings.
+/// The recordings of a system, each replayed with several sets of settings.
 struct Archive {
     system: &'static dyn AnySystem,
     configs: Vec<Settings>,
     logs: Logs,
     folder: PathBuf,
-    /// What all have in common.
+    /// The files that all recordings share.
     files: Files,
-    /// What the recordings themselves are.
+    /// The name of the field that the recordings themselves fill.
     field: &'static str,
 }
 
 impl Archive {
-    /// The recordings are the one file that must be there and is not named.
+    /// An archive whose recordings fill the only required field that is not among the shared files.
     fn new(
         system: &'static dyn AnySystem,
         configs: Vec<Settings>,
@@ -64,7 +64,7 @@ impl Archive {
         files
     }
 
-    /// Reads a recording once, and tracks it with each of the settings; what is wrong stands in its line.
+    /// Reads a recording once and tracks it with each set of settings; errors are reported in its lines.
     fn lines(&self, path: &Path) -> Vec<Line> {
         let opened = self.system.open(Source::Files(self.files(path)), &self.configs[0]);
         let line = |settings: &Settings| {
@@ -91,7 +91,7 @@ impl Archive {
     }
 }
 
-/// The recordings of a plan.
+/// The recordings of a plan as a block of trials.
 pub(super) fn block(plan: &Plan, logs: &Logs) -> Result<Block, Error> {
     let system = named(plan.studies.first().map_or("", |study| &study.system))?;
     let (configs, folder) = (configs(system, plan)?, plan.folder.clone());
@@ -112,7 +112,7 @@ pub(super) fn configs(system: &dyn AnySystem, plan: &Plan) -> Result<Vec<Setting
     plan.studies.iter().map(config).collect()
 }
 
-/// `replay SYSTEM --logs PATTERN --out TABLE`: nothing that a recording has wrong ends the run.
+/// Runs `replay SYSTEM --logs PATTERN --out TABLE`: errors in a recording do not end the run.
 pub(super) fn run(
     system: &'static dyn AnySystem,
     matches: &ArgMatches,
@@ -152,7 +152,7 @@ pub(super) fn run(
     output::print(&archive::counts(&lines))
 }
 
-/// Writes a table with what it is of.
+/// Writes a table together with a description of its origin.
 pub(super) fn write(
     out: &Path,
     system: &dyn AnySystem,

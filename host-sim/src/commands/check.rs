@@ -1,4 +1,4 @@
-//! `host-sim check`: what a log shows before it is used.
+//! `host-sim check`: examines a log before it is used.
 
 use clap::{ArgMatches, Command};
 use kestirim_replay::Finding;
@@ -19,7 +19,7 @@ pub(super) fn command() -> Command {
         .subcommands(ALL.iter().map(|system| recorded(*system)))
 }
 
-/// Reads, looks and prints; with a fault, too, it was done.
+/// Reads the log, examines it and prints the findings; finding a fault is not an error.
 pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     let (system, matches) = chosen(matches)?;
     let (opened, settings) = opened(system, matches)?;

@@ -1,4 +1,4 @@
-//! A port for datagrams.
+//! A UDP port.
 
 use std::io::{self, ErrorKind};
 use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
@@ -9,17 +9,18 @@ use socket2::{Domain, Protocol, Socket, Type};
 use crate::Error;
 use crate::text::printable;
 
-/// Whoever waits for bytes looks up this often, to see whether it is to stop.
+/// The interval at which a thread that waits for bytes checks whether it is to stop.
 pub(super) const PATIENCE: Duration = Duration::from_millis(100);
-/// What the kernel is asked to keep while this program is busy elsewhere; it gives what it is allowed to.
+/// The requested size of the kernel's receive buffer in bytes, for times when this program is busy; the kernel may
+/// grant less.
 const KERNEL_BYTES: usize = 4 << 20;
-/// No datagram is longer.
+/// The size of the receive buffer in bytes: no datagram is longer.
 pub(super) const LONGEST: usize = 1 << 16;
 
-/// Listens to datagrams for this address, of the option `--udp`.
+/// Binds a UDP socket to this address, which the option `--udp` gives.
 ///
 /// # Errors
-/// [`Error::Usage`] if it cannot be had.
+/// [`Error::Usage`] if the address is not available.
 pub(super) fn listen(address: &str) -> Result<UdpSocket, Error> {
     let failed = |error: &io::Error| Error::Usage(format!("--udp {}: {error}", printable(address)));
     let mut addresses = address.to_socket_addrs().map_err(|error| failed(&error))?;
@@ -30,14 +31,14 @@ pub(super) fn listen(address: &str) -> Result<UdpSocket, Error> {
 
 fn bound(address: SocketAddr) -> io::Result<UdpSocket> {
     let socket = Socket::new(Domain::for_address(address), Type::DGRAM, Some(Protocol::UDP))?;
-    // Less than asked for is less room, and no reason not to listen.
+    // A smaller buffer than requested is no reason not to listen.
     let _ = socket.set_recv_buffer_size(KERNEL_BYTES);
     socket.set_read_timeout(Some(PATIENCE))?;
     socket.bind(&address.into())?;
     Ok(socket.into())
 }
 
-/// Whether waiting ended without bytes: none for now.
+/// Whether a read ended because no bytes have arrived yet.
 pub(super) fn is_silence(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted)
 }

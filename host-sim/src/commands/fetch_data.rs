@@ -1,4 +1,4 @@
-//! `host-sim fetch-data`: the recordings that may be passed on, from those who publish them.
+//! `host-sim fetch-data`: downloads the recordings that may be redistributed, from their publishers.
 
 mod download;
 mod sources;
@@ -27,12 +27,12 @@ pub(super) struct FetchData {
     sources: Option<PathBuf>,
 }
 
-/// What became of a file.
+/// The outcome for a file.
 enum Fate {
     Fetched,
-    /// It was there, as it should be.
+    /// The file was already present and correct.
     There,
-    /// Nobody is asked for it, and why.
+    /// The file is not requested, for this reason.
     NotAsked(String),
 }
 

@@ -6,7 +6,7 @@ use crate::output;
 use crate::system::AnySystem;
 use crate::systems::ALL;
 
-/// What there is.
+/// A description of all systems.
 pub(super) fn list() -> String {
     ALL.iter().map(|system| describe(*system)).collect::<Vec<_>>().join("\n")
 }

@@ -1,4 +1,4 @@
-//! `host-sim calibrate`, `survey` and `identify`: what a system finds out from a log that was made for it.
+//! `host-sim calibrate`, `survey` and `identify`: what a system determines from a log recorded for the purpose.
 
 use clap::{ArgMatches, Command};
 
@@ -7,7 +7,7 @@ use crate::Error;
 use crate::system::{AnySystem, Calibration};
 use crate::systems::ALL;
 
-/// A command: its name, what it does, and what a system has of it.
+/// A command: its name, its description, and the function that gets it from a system.
 type Made = (&'static str, &'static str, fn(&dyn AnySystem) -> Option<Box<dyn Calibration>>);
 
 pub(super) const CALIBRATE: Made =

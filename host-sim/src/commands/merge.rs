@@ -1,4 +1,4 @@
-//! `host-sim merge`: the shards of a sweep as one run.
+//! `host-sim merge`: combines the shards of a sweep into one run.
 
 use std::path::PathBuf;
 
@@ -64,7 +64,7 @@ impl Together {
         output::print(&report.to_string())
     }
 
-    /// What a study prints: alone, what `run` prints.
+    /// Prints the result of a study; a single study prints what `run` prints.
     fn experiment(
         &self,
         study: &Study,

@@ -1,4 +1,4 @@
-//! The commands, each written once for any system.
+//! The commands, each written once for all systems.
 
 mod archive;
 mod arguments;
@@ -35,10 +35,10 @@ use crate::system::{Account, AnySystem};
 use crate::systems::ALL;
 use crate::{Error, output};
 
-/// Where the report goes, from the folder in which the program is started.
+/// The folder of the report, relative to the working directory.
 const REPORT: &str = "target/report";
 
-/// The whole command line. The options of `live` are those of the system that `arguments` names.
+/// The complete command line. The options of `live` are those of the system that `arguments` names.
 pub fn command(arguments: &[OsString]) -> Command {
     let command = Command::new("host-sim")
         .version(env!("CARGO_PKG_VERSION"))
@@ -109,10 +109,10 @@ on standard error says which file, which line and what was expected. NO_COLOR is
     )
 }
 
-/// Does what the command line asks for.
+/// Runs the command that the command line asks for.
 ///
 /// # Errors
-/// One sentence.
+/// A one-sentence error.
 pub fn dispatch(matches: &ArgMatches) -> Result<(), Error> {
     let Some((name, matches)) = matches.subcommand() else {
         return run::everything(Path::new(REPORT), run::data_of(matches));
@@ -137,10 +137,10 @@ pub fn dispatch(matches: &ArgMatches) -> Result<(), Error> {
     }
 }
 
-/// What came of the recording that a command line of `replay` names; files that it asks for are written.
+/// Replays the recording that a command line of `replay` names, and writes the requested files.
 ///
 /// # Errors
-/// One sentence.
+/// A one-sentence error.
 pub fn replayed(matches: &ArgMatches) -> Result<Account, Error> {
     let replay = matches.subcommand_matches("replay");
     let replay = replay.ok_or_else(|| Error::Usage("expected replay".to_owned()))?;
@@ -148,21 +148,21 @@ pub fn replayed(matches: &ArgMatches) -> Result<Account, Error> {
     replay::account(system, matches)
 }
 
-/// Prints what makes a shell complete this program's options.
+/// Prints the script with which a shell completes this program's options.
 fn completions(matches: &ArgMatches) -> Result<(), Error> {
     let Some(&shell) = matches.get_one::<Shell>("shell") else { return Ok(()) };
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut command(&[]), "host-sim", &mut script);
     let mut script = String::from_utf8_lossy(&script).into_owned();
     if shell == Shell::Bash {
-        // clap_complete writes the hyphen of a program's name in two ways, so that nothing below a command is completed:
-        // https://github.com/clap-rs/clap/issues/6421.
+        // clap_complete writes the hyphen of a program's name in two ways, so that nothing below a command is
+        // completed: https://github.com/clap-rs/clap/issues/6421.
         script = script.replace("host__subcmd__sim", "host__sim");
     }
     output::print(&script)
 }
 
-/// What is wrong with a command line, in one plain sentence.
+/// The error message for a wrong command line, in one plain sentence.
 pub fn complaint(error: &clap::Error, arguments: &[OsString]) -> String {
     let is_live = arguments.get(1).is_some_and(|word| word == "live");
     let known = if is_live { live::complaint(error) } else { None };

@@ -1,4 +1,4 @@
-//! The recorded part of a chapter: recordings of a folder of data, replayed, beside what is known of them.
+//! The recorded part of a chapter: replays of the recordings in a folder of data, beside known results.
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ use crate::system::{
 use crate::text::printable_path;
 use crate::{Error, output};
 
-/// Where recordings are read, and where what is made of them is written.
+/// The folder that recordings are read from, and the one that files made from them are written to.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Folders<'a> {
     pub(super) data: &'a Path,
@@ -27,8 +27,8 @@ pub(super) fn refuse_absent(data: &Path) -> Result<(), Error> {
     read.map_err(|source| Error::Read { path: data.to_path_buf(), source })
 }
 
-/// What a system's recordings give; those that are missing or give nothing are named. None if it has none. `command` makes the
-/// report again.
+/// The results of a system's recordings; missing and failing ones are named. `None` if the system has no recordings.
+/// `command` reproduces the report.
 pub(super) fn of(
     system: &dyn AnySystem,
     folders: Folders,
@@ -68,7 +68,7 @@ pub(super) fn of(
     Ok(Some(Recorded { folder, left_out, studies: studied }))
 }
 
-/// Recordings of one kind.
+/// The recordings of one kind, with their system and folders.
 #[derive(Clone, Copy)]
 struct Of<'a> {
     system: &'a dyn AnySystem,
@@ -77,7 +77,7 @@ struct Of<'a> {
 }
 
 impl Of<'_> {
-    /// Makes the files that are made of others, each once. One that cannot be made is missed by its recordings.
+    /// Makes the files that are made from others, each once. If one cannot be made, its recordings are left out.
     fn make_files(&self) {
         let mut made: Vec<PathBuf> = Vec::new();
         for (_, file) in self.study.recordings.iter().flat_map(|recording| recording.files) {
@@ -87,7 +87,7 @@ impl Of<'_> {
             if made.contains(&path) || !are_there {
                 continue;
             }
-            // That of an earlier report is not what is made now.
+            // A file of an earlier report must not be taken for the one made now.
             let _ = std::fs::remove_file(&path);
             if let Err(error) = make(self.folders.data, &path) {
                 output::warn(&format!("warning: {error}"));
@@ -108,7 +108,7 @@ impl Of<'_> {
         format!("{}-recorded-{}", self.system.name(), self.study.id)
     }
 
-    /// What came of a recording, or why there is none.
+    /// The result of a recording, or the reason why there is none.
     fn replay(&self, recording: &Recording) -> Result<Replayed, String> {
         let absent = |path: &&str| !self.folders.data.join(path).is_file();
         let mut missing = recording.needs().filter(absent);
@@ -148,7 +148,7 @@ impl Of<'_> {
         })
     }
 
-    /// Those that are shown, with names of their own. What the published method gives is in the figures of ours.
+    /// The figures to show, with unique ids. Results of the published method appear in the figures of ours.
     fn figures(&self, recording: &Recording, figures: &[Figure]) -> Vec<Figure> {
         let shown = self.study.figures.iter().filter(|_| recording.is_ours());
         let shown = shown.filter_map(|id| figures.iter().find(|figure| figure.id == *id));
@@ -166,7 +166,7 @@ impl Of<'_> {
             .collect()
     }
 
-    /// What is told of all.
+    /// The results of all recordings together.
     fn studied(&self, there: Vec<(&Recording, Replayed)>, command: &str) -> Studied {
         let mut table = Comparison::new(self.id(), self.study.title).note(self.study.note);
         for (place, measure) in self.study.measures.iter().enumerate() {
@@ -192,7 +192,7 @@ impl Of<'_> {
         }
     }
 
-    /// A row and its numbers. What others say is of all recordings, and not of some.
+    /// Adds a row and its numbers. Known values apply only if no recording is missing.
     fn put_together(
         &self,
         table: Comparison,
@@ -217,7 +217,7 @@ impl Of<'_> {
     }
 }
 
-/// None of no number.
+/// Combines magnitudes; `None` if there are none.
 fn put_together(over: Over, magnitudes: &[f64]) -> Option<f64> {
     (!magnitudes.is_empty()).then(|| match over {
         Over::One | Over::Mean => mean(magnitudes),

@@ -1,4 +1,4 @@
-//! `host-sim replay`: a recording, tracked and compared with the truth where that is known.
+//! `host-sim replay`: tracks a recording and compares it with the truth where that is known.
 
 use std::path::PathBuf;
 
@@ -45,7 +45,7 @@ fn of(system: &dyn AnySystem) -> Command {
         .arg(file("out", "TABLE.csv", out).requires("logs"))
 }
 
-/// A command for a recording of a system, with the options that say where it is and how it is tracked.
+/// A command for a recording of a system, with the options for its files and for how it is tracked.
 pub(super) fn recorded(system: &dyn AnySystem) -> Command {
     let settings = system.settings();
     let is_file = |name: &str| system.files().iter().any(|field| field.name == name);
@@ -60,7 +60,7 @@ pub(super) fn recorded(system: &dyn AnySystem) -> Command {
         .help("A synthetic recording instead of files")
         .value_parser(PossibleValuesParser::new(names))
         .conflicts_with_all(system.files().iter().map(|field| field.name).filter(|name| {
-            // Text that is a value of a setting is no file.
+            // A text that is a value of a setting is not a file.
             !settings.iter().any(|setting| setting.name == *name)
         }));
     let imports = system.files().iter().any(|field| field.imported);
@@ -85,7 +85,7 @@ fn file(name: &'static str, value_name: &'static str, help: &'static str) -> Arg
     arg.value_parser(value_parser!(PathBuf))
 }
 
-/// Reads, tracks, compares, writes and prints; nothing is printed if anything is wrong.
+/// Reads, tracks, compares, writes and prints; nothing is printed if there is an error.
 pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     let (system, matches) = chosen(matches)?;
     if let Some(pattern) = matches.get_one::<String>("logs") {
@@ -106,7 +106,7 @@ pub(super) fn account(system: &dyn AnySystem, matches: &ArgMatches) -> Result<Ac
     open(system, matches, &settings, files)?.replay(&settings, &wanted)
 }
 
-/// The recording that a command line names, and what it sets.
+/// The recording that a command line names, opened, and its settings.
 pub(super) fn opened(
     system: &dyn AnySystem,
     matches: &ArgMatches,
@@ -129,7 +129,7 @@ fn open(
 ) -> Result<Box<dyn Opened>, Error> {
     system.refuse_idle(settings)?;
     let source = match matches.get_one::<String>("synthetic") {
-        // A file whose name is no value of the setting of the same name.
+        // A text that is not a value of the setting of the same name is a file.
         Some(_) if files.paths().next().is_some() => {
             return Err(Error::Usage("--synthetic needs no file".to_owned()));
         }
@@ -159,7 +159,7 @@ fn show(account: &Account, json: bool) -> Result<(), Error> {
     output::print(&table.to_string())
 }
 
-/// Refuses outputs that would be written twice, over an input, or not at all.
+/// Refuses outputs that would be written twice or over an input, or that cannot be written.
 fn check_outputs(wanted: &Wanted, files: &Files) -> Result<(), Error> {
     let option = |name: &str| format!("--{name}");
     let tables = wanted.tables.iter().map(|(name, path)| (option(name), path));

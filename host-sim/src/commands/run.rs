@@ -1,4 +1,4 @@
-//! `host-sim run`: a system on its synthetic streams, published beside own results.
+//! `host-sim run`: runs a system on its synthetic streams and shows published beside own results.
 
 use std::path::{Path, PathBuf};
 
@@ -36,12 +36,12 @@ pub(super) fn data() -> Arg {
     arg.value_parser(value_parser!(PathBuf))
 }
 
-/// The folder of recordings, if there is one.
+/// The folder of recordings, if one is given.
 pub(super) fn data_of(matches: &ArgMatches) -> Option<&Path> {
     matches.get_one::<PathBuf>(DATA).map(PathBuf::as_path)
 }
 
-/// The recorded part of a chapter, if there is a folder of recordings.
+/// The recorded part of a chapter, if a folder of recordings is given.
 fn recorded(
     system: &dyn AnySystem,
     data: Option<&Path>,
@@ -55,7 +55,7 @@ fn recorded(
     recorded::of(system, Folders { data, report }, &command)
 }
 
-/// Runs an experiment, writes what was asked for, and prints the rest.
+/// Runs an experiment, writes the requested files and prints the result.
 pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     let (system, matches) = chosen(matches)?;
     let (options, outputs) = (read::<RunOptions>(matches)?, read::<Outputs>(matches)?);
@@ -79,8 +79,8 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     output::print(&experiment.text)
 }
 
-/// Runs every system on its synthetic streams, prints the few numbers that matter most, and writes the
-/// report into `folder`, with what the recordings of a folder of `data` give.
+/// Runs every system on its synthetic streams, prints the few most important numbers, and writes the report into
+/// `folder`, including the results of recordings in the folder `data`.
 pub(super) fn everything(folder: &Path, data: Option<&Path>) -> Result<(), Error> {
     output::refuse_unwritable_folder(folder)?;
     data.map_or(Ok(()), recorded::refuse_absent)?;

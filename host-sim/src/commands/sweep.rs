@@ -1,4 +1,4 @@
-//! `host-sim sweep`: a plan of many trials, or of many recordings, in shards.
+//! `host-sim sweep`: runs a plan of many trials, or of many recordings, in shards.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::system::{AnySystem, RunOptions, ScalarKind, Settings};
 use crate::text::printable_path;
 use crate::{Error, output};
 
-/// Of the option of that name.
+/// The help of the option `--shard`.
 const SHARD: &str = "One shard of N, counted from 0 [default: what HQ_TASK_ID, SLURM_ARRAY_TASK_ID or JOB_COMPLETION_INDEX \
                      says; else all that are not there yet]";
 
@@ -55,7 +55,7 @@ impl Sweep {
     }
 }
 
-/// A plan with the trials of each study.
+/// The work of a plan: the trials of each of its studies.
 pub(super) fn work(plan: Plan) -> Result<Work, Error> {
     let blocks = if let Some(logs) = &plan.logs {
         vec![vec![archive::block(&plan, logs)?]]
@@ -69,7 +69,7 @@ pub(super) fn work(plan: Plan) -> Result<Work, Error> {
     Ok(Work::new(plan, blocks)?)
 }
 
-/// What a study asks for, as `run` is asked.
+/// The system, options and settings of a study, as `run` would have them.
 pub(super) fn asked(
     study: &Study,
 ) -> Result<(&'static dyn AnySystem, RunOptions, Settings), Error> {

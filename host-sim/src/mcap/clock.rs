@@ -1,17 +1,17 @@
-/// The seconds of the streams as nanoseconds of the file.
+/// Converts the times of the streams, in seconds, to the nanoseconds of the file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Clock {
     zero_s: f64,
 }
 
-/// Seconds that fit into the stamp of a message, to the year 2106.
+/// The largest number of seconds that fits into the timestamp of a message, which reaches to the year 2106.
 const SECONDS: f64 = u32::MAX as f64;
 
 impl Clock {
-    /// A clock on which all `times`, s, can be written: moved by whole seconds if it must be.
+    /// Returns a clock that can represent all `times` (s), shifted by whole seconds if necessary.
     ///
     /// # Errors
-    /// What is wrong with the times.
+    /// A sentence that describes what is wrong with the times.
     pub(super) fn holding(times: impl Iterator<Item = f64>) -> Result<Self, String> {
         let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
         for time in times {
@@ -31,15 +31,15 @@ impl Clock {
         }
     }
 
-    /// Which second of the streams is 0 in the file.
+    /// The stream time, in seconds, that is 0 in the file.
     pub(super) const fn zero_s(self) -> f64 {
         self.zero_s
     }
 
-    /// A time of the streams, s, in the file, ns.
+    /// Converts a stream time (s) to a file time (ns).
     pub(super) fn nanoseconds(self, time: f64) -> u64 {
         let since = time - self.zero_s;
-        // The whole seconds on their own: a day in nanoseconds already takes 47 of the 53 bits.
+        // Whole seconds are converted separately: a day in nanoseconds already takes 47 of the 53 bits.
         let whole = since.floor();
         whole as u64 * 1_000_000_000 + ((since - whole) * 1e9).round() as u64
     }

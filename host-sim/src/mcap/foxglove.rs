@@ -1,14 +1,15 @@
-//! The messages of Foxglove that are written, with the fields that are set. A file tells readers of all fields: the schemas
-//! in `assets/foxglove` are whole, as published: <https://docs.foxglove.dev/docs/visualization/message-schemas/introduction>.
+//! The Foxglove messages that are written, with only the fields that are set. The file describes all fields to readers:
+//! the schemas in `assets/foxglove` are complete, as published:
+//! <https://docs.foxglove.dev/docs/visualization/message-schemas/introduction>.
 
 use prost::Message;
 use prost_types::Timestamp;
 
-/// What tells readers how a message is laid out.
+/// A schema, which describes the layout of a message to readers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Schema {
     pub(super) name: &'static str,
-    /// A `FileDescriptorSet`, encoded.
+    /// The encoded `FileDescriptorSet`.
     pub(super) descriptors: &'static [u8],
 }
 
@@ -24,7 +25,7 @@ pub(super) const SCENE_UPDATE: Schema = Schema {
     descriptors: include_bytes!("../../assets/foxglove/SceneUpdate.bin"),
 };
 
-/// Where something is and how it is turned, in a named frame.
+/// The position and orientation of an object in a named frame.
 #[derive(Clone, PartialEq, Message)]
 pub(super) struct PoseInFrame {
     #[prost(message, tag = "1")]
@@ -43,7 +44,7 @@ pub(super) struct Pose {
     pub(super) orientation: Option<Quaternion>,
 }
 
-/// A position, m; `foxglove.Point3` is laid out alike.
+/// A position (m); `foxglove.Point3` has the same layout.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub(super) struct Vector3 {
     #[prost(double, tag = "1")]
@@ -66,7 +67,7 @@ pub(super) struct Quaternion {
     pub(super) w: f64,
 }
 
-/// What is added to a scene.
+/// An update that adds entities to a scene.
 #[derive(Clone, PartialEq, Message)]
 pub(super) struct SceneUpdate {
     #[prost(message, repeated, tag = "2")]
@@ -85,12 +86,12 @@ pub(super) struct SceneEntity {
     pub(super) lines: Vec<LinePrimitive>,
 }
 
-/// A line from point to point: type 0, `LINE_STRIP`, which is not written.
+/// A polyline through points: type 0, `LINE_STRIP`, which is the default and not written.
 #[derive(Clone, PartialEq, Message)]
 pub(super) struct LinePrimitive {
     #[prost(double, tag = "3")]
     pub(super) thickness: f64,
-    /// As many pixels at any distance.
+    /// Whether the thickness is in pixels, independent of the distance.
     #[prost(bool, tag = "4")]
     pub(super) scale_invariant: bool,
     #[prost(message, repeated, tag = "5")]
@@ -99,7 +100,7 @@ pub(super) struct LinePrimitive {
     pub(super) color: Option<Color>,
 }
 
-/// Parts from 0 to 1.
+/// A colour; its components range from 0 to 1.
 #[derive(Clone, Copy, PartialEq, Message)]
 pub(super) struct Color {
     #[prost(double, tag = "1")]

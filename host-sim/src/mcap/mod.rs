@@ -22,12 +22,12 @@ use clock::Clock;
 use place::Place;
 use schema::Layout;
 
-/// Writes the streams as a file of messages in the order of their times, whole or not at all.
+/// Writes the streams as a file of messages in chronological order, atomically.
 ///
-/// Every row is a message of doubles named as the columns are. A stream with a place has it drawn on its
-/// topic with `/pose` behind, and all of its places on its topic with `/path` behind. The same streams
-/// give the same bytes. Times before 0 cannot be written: then all streams are moved by the same whole
-/// seconds, which the metadata `clock` tells.
+/// Every row is a message of doubles named after the columns. For a stream with positions, each is also written as a
+/// pose to its topic with the suffix `/pose`, and all of them as one line to its topic with the suffix `/path`. The
+/// same streams give the same bytes. Times before 0 cannot be represented: in that case all streams are shifted by the
+/// same whole seconds, which the metadata record `clock` states.
 ///
 /// # Errors
 /// [`Error::File`] if a time is not a number or the times span more than 136 years, [`Error::Write`] if the
@@ -41,7 +41,7 @@ pub fn write(path: &Path, streams: &[Stream]) -> Result<(), Error> {
     })
 }
 
-/// All of the file.
+/// Writes the complete contents of the file.
 fn messages(file: NoSeek<&mut dyn Write>, streams: &[Stream], clock: Clock) -> McapResult<()> {
     let mut file = WriteOptions::new().compression(None).disable_seeking(true).create(file)?;
     file.write_metadata(&Metadata {
@@ -68,7 +68,7 @@ fn messages(file: NoSeek<&mut dyn Write>, streams: &[Stream], clock: Clock) -> M
     Ok(())
 }
 
-/// Where the messages of a stream go.
+/// The channels that the messages of a stream are written to.
 struct Channels<'a> {
     stream: &'a Stream,
     layout: Layout,
@@ -77,7 +77,7 @@ struct Channels<'a> {
     sequence: u32,
 }
 
-/// The file while it is written.
+/// The file while it is being written.
 type Draft<'a> = Writer<NoSeek<&'a mut dyn Write>>;
 
 impl<'a> Channels<'a> {

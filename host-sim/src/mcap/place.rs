@@ -6,10 +6,10 @@ use super::foxglove::{
 };
 use crate::figure::Colour;
 
-/// The frame that all places are in.
+/// The frame of all positions.
 const FRAME: &str = "world";
 
-/// The columns of a stream that say where something is.
+/// The columns of a stream that hold a position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Place {
     x: usize,
@@ -18,13 +18,13 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The place among the columns, if there is one.
+    /// Finds the position columns, if there are any.
     pub(super) fn among(columns: &[String]) -> Option<Self> {
         let find = |name| columns.iter().position(|column| column == name);
         Some(Self { x: find("x_m")?, y: find("y_m")?, z: find("z_m") })
     }
 
-    /// Where a row is; none if it does not say.
+    /// The position in a row; `None` if it is missing or not finite.
     fn of(self, values: &[f64]) -> Option<[f64; 3]> {
         let value = |index: usize| values.get(index).copied().filter(|value| value.is_finite());
         let z = match self.z {
@@ -34,7 +34,7 @@ impl Place {
         Some([value(self.x)?, value(self.y)?, z])
     }
 
-    /// The place of a row as a `foxglove.PoseInFrame`.
+    /// The position in a row as an encoded `foxglove.PoseInFrame`.
     pub(super) fn pose(self, time: u64, values: &[f64]) -> Option<Vec<u8>> {
         let [x, y, z] = self.of(values)?;
         let position = Some(Vector3 { x, y, z });
@@ -47,7 +47,7 @@ impl Place {
         Some(pose.encode_to_vec())
     }
 
-    /// The places of all rows as a `foxglove.SceneUpdate`: a line, interrupted where there is no place.
+    /// The positions of all rows as an encoded `foxglove.SceneUpdate`: a line, interrupted where there is no position.
     pub(super) fn path(self, time: u64, id: &str, rows: &[(f64, Vec<f64>)]) -> Vec<u8> {
         let places: Vec<_> = rows.iter().map(|(_, values)| self.of(values)).collect();
         let stretches = places.split(Option::is_none).filter(|stretch| stretch.len() > 1);
@@ -61,7 +61,7 @@ impl Place {
     }
 }
 
-/// What is true is drawn as in the figures.
+/// The colour of a topic: the truth is drawn as in the figures.
 fn colour_of(topic: &str) -> Colour {
     if topic.ends_with("/truth") { Colour::Truth } else { Colour::Ours }
 }

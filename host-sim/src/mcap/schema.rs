@@ -5,10 +5,10 @@ use prost::encoding::double;
 use prost_types::field_descriptor_proto::{Label, Type};
 use prost_types::{DescriptorProto, FieldDescriptorProto, FileDescriptorProto, FileDescriptorSet};
 
-/// Where every schema of a stream lives.
+/// The protobuf package of all stream schemas.
 const PACKAGE: &str = "kestirim";
 
-/// A protobuf message that holds a row of a stream: a double a column, numbered from 1.
+/// A protobuf message that holds a row of a stream: a double per column, with field numbers from 1.
 #[derive(Debug)]
 pub(super) struct Layout {
     name: String,
@@ -16,7 +16,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The message of a stream: the fields are named as the columns are, as far as protobuf lets them be.
+    /// The message of a stream: its fields are named after the columns, as far as protobuf allows.
     pub(super) fn new(topic: &str, columns: &[String]) -> Self {
         let name = format!("{PACKAGE}.{}", identifier(topic.trim_matches('/')));
         let mut taken = BTreeSet::new();
@@ -30,12 +30,12 @@ impl Layout {
         Self { name, fields: fields.collect() }
     }
 
-    /// What the message is called.
+    /// The full name of the message.
     pub(super) fn name(&self) -> &str {
         &self.name
     }
 
-    /// What tells readers how the message is laid out.
+    /// The encoded `FileDescriptorSet`, which describes the layout of the message to readers.
     pub(super) fn file_descriptor_set(&self) -> Vec<u8> {
         let field = |(number, name): (i32, &String)| FieldDescriptorProto {
             name: Some(name.clone()),
@@ -60,7 +60,8 @@ impl Layout {
         FileDescriptorSet { file: vec![file] }.encode_to_vec()
     }
 
-    /// A row as this message. Zeros are written as well: some readers take what is left out for missing.
+    /// Encodes a row as this message. Zeros are written as well: some readers take an omitted field for a missing
+    /// value.
     pub(super) fn message(&self, values: &[f64]) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(10 * self.fields.len());
         for (number, value) in (1..).zip(values).take(self.fields.len()) {
@@ -70,7 +71,7 @@ impl Layout {
     }
 }
 
-/// A name that protobuf takes: letters, digits and underscores, a digit never first.
+/// Turns a name into a protobuf identifier: letters, digits and underscores, never beginning with a digit.
 fn identifier(name: &str) -> String {
     let allowed = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let name: String = name.chars().map(allowed).collect();

@@ -4,7 +4,7 @@ use prost_reflect::{DescriptorPool, DynamicMessage, Value};
 
 use super::*;
 
-/// What a reader makes of a file: topic, nanoseconds and the message, decoded by the schema in the file.
+/// Reads a file as a viewer would: topic, time in nanoseconds and the message, decoded by the schema in the file.
 fn read(bytes: &[u8]) -> Vec<(String, u64, DynamicMessage)> {
     let messages = ::mcap::MessageStream::new(bytes).unwrap();
     messages

@@ -5,41 +5,41 @@ use serde::Serialize;
 use super::value::Value;
 use crate::output;
 
-/// Columns where no terminal says its own.
+/// The width in columns if no terminal states its own.
 const WIDTH: u16 = 120;
 
-/// A table of a paper: published, ours, limit.
+/// A table of a paper: published values, ours and the limit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
-    /// Names its files and its place on the page: lower case, with hyphens.
+    /// The identifier in file names and on the page: lower case, with hyphens.
     pub id: String,
     /// Which table of the paper, and what it shows.
     pub title: String,
     /// The quantities.
     pub rows: Vec<Row>,
-    /// What explains a difference; may be empty.
+    /// An explanation of differences; may be empty.
     pub note: String,
-    /// The numbers in the rows, and those that the rows leave out, for programs.
+    /// The numbers in the rows, and further ones that the rows omit, for other programs.
     pub values: Vec<Value>,
 }
 
-/// A quantity, with its unit, and what everyone says of it; an empty cell is unknown.
+/// A quantity with its unit and its value by each source; an empty cell is unknown.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Row {
-    /// What is measured, where and in which unit.
+    /// The quantity, its circumstances and its unit.
     pub quantity: String,
-    /// As printed.
+    /// The value as printed in the paper.
     pub published: String,
-    /// By the published method, as it is run here.
+    /// The value by the published method, as run here.
     pub theirs: String,
-    /// By this library's own.
+    /// The value by this library's own method.
     pub ours: String,
-    /// What nothing can be better than, or what was asked for.
+    /// The theoretical bound, or the requirement.
     pub limit: String,
 }
 
 impl Row {
-    /// As it is shown: a dash for what is unknown.
+    /// The cells as shown: a dash for an unknown value.
     pub fn cells(&self) -> [&str; 5] {
         let Self { quantity, published, theirs, ours, limit } = self;
         [quantity, published, theirs, ours, limit]
@@ -54,7 +54,7 @@ impl Comparison {
         Self { id: id.into(), title: title.into(), rows, note: String::new(), values }
     }
 
-    /// With another row, whose number is by this library's own method.
+    /// Adds a row whose number is by this library's own method.
     pub fn row(
         self,
         quantity: impl Into<String>,
@@ -65,7 +65,7 @@ impl Comparison {
         self.beside(quantity, published, "", ours, limit)
     }
 
-    /// With another row, whose number is by the published method as it is run here.
+    /// Adds a row whose number is by the published method, as run here.
     pub fn repeated(
         self,
         quantity: impl Into<String>,
@@ -76,7 +76,7 @@ impl Comparison {
         self.beside(quantity, published, theirs, "", limit)
     }
 
-    /// With another row, of both methods.
+    /// Adds a row with the numbers of both methods.
     pub fn beside(
         mut self,
         quantity: impl Into<String>,
@@ -95,13 +95,13 @@ impl Comparison {
         self
     }
 
-    /// With more numbers for programs.
+    /// Adds numbers for other programs.
     pub fn values(mut self, values: impl IntoIterator<Item = Value>) -> Self {
         self.values.extend(values);
         self
     }
 
-    /// Names of the columns that hold anything, after that of the quantities, and whether each column does.
+    /// The names of the columns after that of the quantities, each with whether any row has a value in it.
     pub fn columns(&self) -> [(&'static str, bool); 4] {
         let any = |of: fn(&Row) -> &String| self.rows.iter().any(|row| !of(row).is_empty());
         [
@@ -112,7 +112,7 @@ impl Comparison {
         ]
     }
 
-    /// With a sentence on what explains a difference.
+    /// Sets the explanation of differences.
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self

@@ -20,8 +20,8 @@ const HEADER: [&str; 12] = [
     "command",
 ];
 
-/// Writes all numbers of all comparisons, a row each: what is unknown is empty. Published ones stand beside the method that was
-/// published, and are repeated where several are compared with them.
+/// Writes all numbers of all comparisons, one per row; an unknown value is an empty field. A published number stands
+/// beside the method that was published, and is repeated where several are compared with it.
 ///
 /// # Errors
 /// [`Error::Write`].

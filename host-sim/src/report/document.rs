@@ -1,4 +1,4 @@
-//! A page with figures that needs nothing but itself.
+//! A self-contained page with figures.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::{Map, Value};
@@ -12,18 +12,18 @@ const CLOCK: &str = include_str!("../../assets/clock.js");
 const FIGURES: &str = include_str!("../../assets/figures.js");
 const SCRIPT: &str = include_str!("../../assets/report.js");
 
-/// Nothing may be fetched from anywhere.
+/// The content security policy of the page: nothing may be fetched from anywhere.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
 
-/// A page.
+/// A page with its title, body and figures.
 pub(super) struct Document<'a> {
     pub(super) title: &'a str,
     pub(super) body: Markup,
-    /// By their ids; drawn where `data-figure` is such an id.
+    /// The figures by id; each is drawn where `data-figure` is its id.
     pub(super) figures: Map<String, Value>,
 }
 
-/// Figures as the page draws them, by their ids.
+/// The figures by id, in the form that the page draws.
 pub(super) fn figures<'a>(
     figures: impl IntoIterator<Item = &'a Figure>,
     view: View,
@@ -35,7 +35,7 @@ pub(super) fn figures<'a>(
 impl Document<'_> {
     pub(super) fn render(self) -> String {
         let Self { title, body, figures } = self;
-        // In a text `</script>` would end the element, and `<!--` change how it ends.
+        // Unescaped, `</script>` would end the element, and `<!--` change how it ends.
         let figures = Value::from(figures).to_string().replace('<', "\\u003c");
         let page = html! {
             (DOCTYPE)
@@ -63,7 +63,7 @@ impl Document<'_> {
 pub(super) mod tests {
     use super::PLOTLY;
 
-    /// Fails if a page asks for anything.
+    /// Fails if a page would fetch anything.
     pub(in crate::report) fn assert_fetches_nothing(page: &str) {
         let own = page.replace(PLOTLY, "");
         for address in ["http:", "https:", "src=\"", "@import", "url("] {

@@ -1,4 +1,4 @@
-//! The report as a folder: a page, and beside it everything in forms that other programs read.
+//! The report as a folder: a page, and beside it all data in forms that other programs read.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,8 +9,8 @@ use super::{Chapter, csv, page};
 use crate::figure::svg;
 use crate::{Error, figure, mcap, output};
 
-/// Writes the page, `results.csv`, `results.json`, every figure as SVG and CSV, and each system's streams as
-/// MCAP, and says where the page is.
+/// Writes the page, `results.csv`, `results.json`, every figure as SVG and CSV, and each system's streams as MCAP, and
+/// returns the path of the page.
 ///
 /// # Errors
 /// [`Error::Write`].
@@ -35,7 +35,7 @@ pub fn write(folder: &Path, chapters: &[Chapter]) -> Result<PathBuf, Error> {
     Ok(folder.join("index.html"))
 }
 
-/// Every table, with how it was made.
+/// All tables, each with how it was made.
 fn results(chapters: &[Chapter]) -> serde_json::Value {
     let system = |chapter: &Chapter| {
         let tables = chapter.tables().map(|(table, made)| json!({ "table": table, "made": made }));

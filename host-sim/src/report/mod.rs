@@ -1,4 +1,4 @@
-//! What a run shows: comparisons with the papers, figures, streams, and how each was made.
+//! The results of a run: comparisons with the papers, figures, streams, and how each was made.
 
 mod comparison;
 pub mod csv;
@@ -27,38 +27,38 @@ pub struct Chapter {
     pub system: &'static str,
     /// What the system does, in a few words.
     pub title: &'static str,
-    /// The paper it is from.
+    /// The paper that the system is from.
     pub paper: &'static str,
-    /// What a reader should know before the numbers, in a sentence or three.
+    /// What a reader should know before the numbers, in one to three sentences.
     pub about: String,
-    /// The few numbers that matter most: what the terminal shows.
+    /// The few most important numbers, which the terminal shows.
     pub summary: Comparison,
-    /// Tables and figures in the paper's order, then our own.
+    /// Tables and figures in the paper's order, followed by our own.
     pub items: Vec<Item>,
-    /// What can be looked at in other programs.
+    /// Streams for inspection in other programs.
     pub streams: Vec<Stream>,
-    /// What the first page says of it.
+    /// The rows of this system in the report's first table.
     pub headlines: Vec<Headline>,
-    /// The figure that the first page shows; nothing if it is not there.
+    /// The id of the figure shown on the first page; no picture is shown if there is no such figure.
     pub picture: &'static str,
-    /// What recordings gave, if there is a folder of them.
+    /// The results of recordings, if a folder of them was given.
     pub recorded: Option<Recorded>,
 }
 
-/// A row of the report's first table: one quantity, by everyone.
+/// A row of the report's first table: one quantity, by each source.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Headline {
-    /// What is measured, on what.
+    /// The quantity, and what it is measured on.
     pub quantity: String,
-    /// Its unit.
+    /// The unit of the quantity.
     pub unit: &'static str,
-    /// As printed.
+    /// The value as printed in the paper.
     pub published: Option<f64>,
-    /// By the published method, as it is run here.
+    /// The value by the published method, as run here.
     pub theirs: Option<f64>,
-    /// By this library's own.
+    /// The value by this library's own method.
     pub ours: Option<f64>,
-    /// What nothing can be better than.
+    /// The theoretical bound.
     pub limit: Option<f64>,
 }
 
@@ -67,33 +67,33 @@ pub struct Headline {
 pub struct Item {
     /// What is shown.
     pub content: Content,
-    /// How it came about.
+    /// How the content was made.
     pub made: Made,
 }
 
-/// What an [`Item`] shows.
+/// The content of an [`Item`].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Content {
-    /// Published, ours and limit.
+    /// A table of published values, ours and the limit.
     Comparison(Comparison),
     /// A diagram.
     Figure(Figure),
 }
 
-/// How numbers were made: enough to make them again.
+/// How numbers were made: enough to reproduce them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Made {
-    /// What to type.
+    /// The command to type.
     pub command: String,
-    /// Seed of the randomness.
+    /// The seed of all randomness.
     pub seed: u64,
-    /// How many repetitions of what: `20 × 7 walks`.
+    /// The number and kind of repetitions: `20 × 7 walks`.
     pub trials: String,
 }
 
 #[cfg(test)]
 impl Chapter {
-    /// Without anything in it.
+    /// An empty chapter.
     fn of(system: &'static str) -> Self {
         Self {
             system,
@@ -109,7 +109,7 @@ impl Chapter {
         }
     }
 
-    /// Fails if a table has no number for programs, or the first page nothing to say.
+    /// Fails if a table has no number for other programs, or the chapter no headlines.
     pub(crate) fn assert_complete(&self) {
         for table in self.comparisons() {
             let mut values = table.values.iter();
@@ -121,7 +121,7 @@ impl Chapter {
 }
 
 impl Chapter {
-    /// The tables, without the summary, and how each was made.
+    /// The tables except the summary, each with how it was made.
     pub fn tables(&self) -> impl Iterator<Item = (&Comparison, &Made)> {
         self.items.iter().filter_map(|item| match &item.content {
             Content::Comparison(comparison) => Some((comparison, &item.made)),
@@ -129,12 +129,12 @@ impl Chapter {
         })
     }
 
-    /// The tables, without the summary.
+    /// The tables except the summary.
     pub fn comparisons(&self) -> impl Iterator<Item = &Comparison> {
         self.tables().map(|(comparison, _)| comparison)
     }
 
-    /// The figures, those of recordings at the end.
+    /// The figures, followed by those of recordings.
     pub fn figures(&self) -> impl Iterator<Item = &Figure> {
         let figures = self.items.iter().filter_map(|item| match &item.content {
             Content::Figure(figure) => Some(figure),
@@ -143,7 +143,7 @@ impl Chapter {
         figures.chain(self.recorded.iter().flat_map(Recorded::figures))
     }
 
-    /// Each number of a table, the table's name, and the command that makes it again; those of recordings at the end.
+    /// Each number with the name of its table and the command that reproduces it; those of recordings come last.
     pub fn numbers(&self) -> impl Iterator<Item = (&str, &Value, &str)> {
         let numbers = self.tables().flat_map(|(table, made)| {
             table.values.iter().map(|value| (table.id.as_str(), value, made.command.as_str()))
@@ -165,7 +165,7 @@ impl From<Figure> for Content {
 }
 
 impl Made {
-    /// As an item of a chapter.
+    /// Wraps content as an item of a chapter.
     pub fn item(&self, content: impl Into<Content>) -> Item {
         Item { content: content.into(), made: self.clone() }
     }

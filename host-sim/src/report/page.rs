@@ -1,4 +1,4 @@
-//! The report as one page that needs nothing but itself.
+//! The report as one self-contained page.
 
 mod recorded;
 
@@ -8,11 +8,11 @@ use super::document::{Document, figures};
 use super::{Chapter, Comparison, Content, Headline, Item, Row, rounded};
 use crate::figure::{Figure, View, svg};
 
-/// More than a screen has columns, so that there is something to zoom into.
+/// The detail of a figure: more points than a screen has columns, so that zooming in reveals more.
 const VIEW: View = View { most_points: 3000, window: None };
 const TITLE: &str = "kestirim: published, ours, limit";
 
-/// The page.
+/// Renders the page.
 pub(super) fn render(chapters: &[Chapter]) -> String {
     let body = html! {
         (header(chapters))
@@ -85,7 +85,7 @@ fn section(chapter: &Chapter) -> Markup {
     }
 }
 
-/// Whether it is numbered as a table or figure of the paper is.
+/// Whether the item is numbered like a table or figure of the paper.
 fn is_of_the_paper(item: &Item) -> bool {
     let title = match &item.content {
         Content::Comparison(comparison) => &comparison.title,
@@ -94,7 +94,7 @@ fn is_of_the_paper(item: &Item) -> bool {
     ["Table ", "Fig", "Chapter ", "Section"].iter().any(|begin| title.starts_with(begin))
 }
 
-/// The first table: a few quantities of every system, by everyone.
+/// The first table: a few quantities of every system, by each source.
 fn headlines(chapters: &[Chapter]) -> Markup {
     html! {
         div.scroll tabindex="0" role="region" aria-label="all systems" {
@@ -125,19 +125,19 @@ fn headline(line: &Headline) -> Markup {
     }
 }
 
-/// A number in a table, or a dash where there is none.
+/// A number in a table; a dash if there is none.
 fn cell(value: Option<f64>) -> String {
     value.map_or_else(|| "—".to_owned(), rounded)
 }
 
-/// A picture of each system, which leads to its chapter.
+/// A picture of each system, which links to its chapter.
 fn pictures(chapters: &[Chapter]) -> Markup {
     html! {
         div.pictures {
             @for chapter in chapters {
                 @if let Some(figure) = chapter.figures().find(|figure| figure.id == chapter.picture) {
                     a href={ "#" (chapter.system) } aria-label=(chapter.title) {
-                        // Within a page it needs no name space.
+                        // Inline SVG needs no XML namespace.
                         (PreEscaped(svg::draw(figure).replace(r#" xmlns="http://www.w3.org/2000/svg""#, "")))
                         span { (figure.title) }
                     }

@@ -1,4 +1,4 @@
-//! What recordings gave, beside the synthetic streams of a chapter.
+//! The results of recordings, beside a chapter's synthetic streams.
 
 use serde::Serialize;
 
@@ -12,41 +12,41 @@ pub struct Recorded {
     pub folder: String,
     /// Recordings that are not shown, and why.
     pub left_out: Vec<String>,
-    /// Recordings by kinds.
+    /// The recordings, grouped by kind.
     pub studies: Vec<Studied>,
 }
 
 /// Recordings of one kind.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Studied {
-    /// What they give together.
+    /// The results of all recordings together.
     pub table: Comparison,
-    /// The command that makes that again.
+    /// The command that reproduces the table.
     pub command: String,
-    /// What is told of each recording, with units.
+    /// The quantities reported for each recording, with units.
     pub quantities: Vec<String>,
-    /// Each recording.
+    /// The results of each recording.
     pub replays: Vec<Replayed>,
 }
 
-/// A recording, and what came of it.
+/// A recording and its results.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Replayed {
-    /// What it is called.
+    /// The name of the recording.
     pub name: String,
     /// A number for each of the quantities.
     pub values: Vec<Value>,
-    /// Whether the estimate can be relied upon.
+    /// Whether the estimate can be relied upon, in words.
     pub health: String,
-    /// The commands that make it again, in their order.
+    /// The commands that reproduce the result, in order.
     pub commands: Vec<String>,
-    /// Some of the figures that the explorer shows of it.
+    /// A selection of the figures that the explorer shows of the recording.
     #[serde(skip)]
     pub figures: Vec<Figure>,
 }
 
 impl Recorded {
-    /// Each number, the table that it belongs to, and the command that makes it again.
+    /// Each number with the table that it belongs to and the command that reproduces it.
     pub(super) fn numbers(&self) -> impl Iterator<Item = (&str, &Value, &str)> {
         self.studies.iter().flat_map(|study| {
             let id = study.table.id.as_str();

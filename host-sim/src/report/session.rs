@@ -1,4 +1,4 @@
-//! A recording and what came of it as one page that needs nothing but itself.
+//! A recording and its results as one self-contained page.
 
 use maud::{Markup, html};
 
@@ -6,28 +6,28 @@ use super::document::{Document, figures};
 use crate::figure::{Figure, View};
 use crate::system::{Answer, Sheet};
 
-/// As many as leave something to see in a tenth of the time.
+/// The detail of a figure: enough points that a tenth of the time still shows detail.
 const VIEW: View = View { most_points: 20_000, window: None };
-/// Rows of a table: some hours of what comes every few seconds.
+/// The maximum number of rows of a table: some hours at one every few seconds.
 const MOST_ROWS: usize = 5000;
 
-/// What the page of a session shows.
+/// The contents of the page of a session.
 #[derive(Debug, Clone, Copy)]
 pub struct Session<'a> {
     /// What the system does.
     pub title: &'a str,
-    /// The command that gives the same again.
+    /// The command that reproduces the result.
     pub command: &'a str,
-    /// What came of it.
+    /// The results of the recording.
     pub answer: &'a Answer,
-    /// Its figures, or those of a comparison.
+    /// The figures of the recording, or those of a comparison.
     pub figures: &'a [Figure],
-    /// The stretch of time that is looked at, s.
+    /// The time window that is shown, in seconds.
     pub window_s: Option<[f64; 2]>,
 }
 
 impl Session<'_> {
-    /// The page.
+    /// Renders the page.
     pub fn page(&self) -> String {
         let Self { title, command, answer, figures: shown, window_s } = self;
         let title = format!("kestirim: {title}");

@@ -1,32 +1,32 @@
-//! Numbers of the report, for programs.
+//! Numbers of the report, for other programs.
 
 use serde::Serialize;
 
-/// A number, what it is of, and what others say of the same.
+/// A number, what it measures, and what other sources state for the same quantity.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Value {
-    /// What is measured.
+    /// The quantity that is measured.
     pub quantity: String,
-    /// Where, of what, under which circumstances; may be empty.
+    /// The conditions: where, of what, under which circumstances; may be empty.
     pub condition: String,
-    /// What gave the number: `default` is this library's, `published …` the paper's own method as it is run here.
+    /// The method that gave the number: `default` is this library's, `published …` the paper's own as run here.
     pub method: String,
-    /// The number; none where there is only a published one.
+    /// The number; `None` if only a published one is known.
     pub value: Option<f64>,
-    /// Its unit; empty for a bare number.
+    /// The unit; empty for a dimensionless number.
     pub unit: &'static str,
-    /// Its standard error, if it is a mean whose standard error is known.
+    /// The standard error, if the number is a mean whose standard error is known.
     pub standard_error: Option<f64>,
-    /// Of how many repetitions it is.
+    /// The number of repetitions that it was computed from.
     pub n: Option<usize>,
-    /// As printed.
+    /// The value as printed in the paper.
     pub published: Option<f64>,
-    /// What nothing can be better than.
+    /// The theoretical bound.
     pub limit: Option<f64>,
 }
 
 impl Value {
-    /// A quantity in a unit, of which nothing is known yet.
+    /// A quantity with its unit and no number yet.
     pub fn new(quantity: impl Into<String>, unit: &'static str) -> Self {
         Self {
             quantity: quantity.into(),
@@ -41,43 +41,43 @@ impl Value {
         }
     }
 
-    /// Under these circumstances.
+    /// Sets the conditions.
     pub fn under(mut self, condition: impl Into<String>) -> Self {
         self.condition = condition.into();
         self
     }
 
-    /// By another method than the default.
+    /// Sets a method other than the default.
     pub fn by(mut self, method: impl Into<String>) -> Self {
         self.method = method.into();
         self
     }
 
-    /// With the number that came out. What is no number is none.
+    /// Sets the number; a value that is not finite counts as none.
     pub fn is(mut self, value: impl Into<Option<f64>>) -> Self {
         self.value = finite(value);
         self
     }
 
-    /// As the mean of so many, with its standard error where that is known.
+    /// Marks the number as the mean of `n` repetitions, with its standard error where known.
     pub fn of(mut self, n: usize, standard_error: impl Into<Option<f64>>) -> Self {
         (self.n, self.standard_error) = (Some(n), finite(standard_error));
         self
     }
 
-    /// With what is printed.
+    /// Sets the published number.
     pub fn published(mut self, value: impl Into<Option<f64>>) -> Self {
         self.published = finite(value);
         self
     }
 
-    /// With what nothing can be better than.
+    /// Sets the theoretical bound.
     pub fn limited(mut self, value: impl Into<Option<f64>>) -> Self {
         self.limit = finite(value);
         self
     }
 
-    /// Values of the same quantity with names of their own, such as those of axes or states: `quantity` is followed by each.
+    /// Values of the same quantity along axes or states: each is named `quantity` followed by one of `names`.
     pub fn each<const N: usize>(
         quantity: &str,
         names: [&'static str; N],
@@ -94,7 +94,7 @@ fn finite(value: impl Into<Option<f64>>) -> Option<f64> {
     value.into().filter(|value| value.is_finite())
 }
 
-/// Three digits that count.
+/// Formats a number with three significant digits.
 pub fn rounded(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -104,7 +104,8 @@ pub fn rounded(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-/// The number in a printed text: of `≈ 1.5` 1.5, of `−0.17` its negative. None if there are several or none, or only a bound.
+/// Parses the number in a printed text: 1.5 in `≈ 1.5`, −0.17 in `about −0.17`. `None` if there are several or none, or
+/// only a bound.
 pub fn printed(text: &str) -> Option<f64> {
     if ["<", ">", "above", "below"].iter().any(|bound| text.contains(bound)) {
         return None;

@@ -1,4 +1,4 @@
-//! What came of a recording.
+//! The results of a recording.
 
 use std::path::PathBuf;
 
@@ -11,39 +11,39 @@ use super::sheet::Sheet;
 use crate::Error;
 use crate::figure::Figure;
 
-/// What came of a recording: for programs, for people, and what a user should know.
+/// The results of a recording: for other programs, for people, and warnings for the user.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Account {
-    /// What `--json` prints.
+    /// The object that `--json` prints.
     pub report: Value,
-    /// Numbers with their units, by name.
+    /// Results by name, with their units.
     pub facts: Vec<(String, String)>,
-    /// What the terminal shows instead of the facts.
+    /// The text that the terminal shows in place of the facts.
     pub text: Option<String>,
-    /// What a user should know.
+    /// Warnings for the user, one sentence each.
     pub warnings: Vec<String>,
-    /// Which file the warnings are about; none if each says so itself.
+    /// The file that the warnings are about; `None` if each names its own.
     pub about: Option<PathBuf>,
-    /// Whether it can be relied upon.
+    /// Whether the result can be relied upon.
     pub health: Health,
 }
 
 impl Account {
-    /// Of a report, with its warnings.
+    /// An account of a report, with its warnings.
     ///
     /// # Errors
-    /// [`Error::Stdout`] for a report that is no JSON.
+    /// [`Error::Stdout`] if the report cannot be represented as JSON.
     pub fn new(report: &impl Serialize, warnings: Vec<String>) -> Result<Self, Error> {
         let report = serde_json::to_value(report).map_err(|error| Error::Stdout(error.into()))?;
         Ok(Self { report, warnings, ..Self::default() })
     }
 
-    /// With another fact.
+    /// Adds a fact.
     pub fn fact(&mut self, name: impl Into<String>, value: impl Into<String>) {
         self.facts.push((name.into(), value.into()));
     }
 
-    /// With another warning.
+    /// Adds a warning, to the report's list as well if it has one.
     pub fn warn(&mut self, sentence: String) {
         if let Some(warnings) = self.report.get_mut("warnings").and_then(Value::as_array_mut) {
             warnings.push(Value::String(sentence.clone()));
@@ -51,12 +51,12 @@ impl Account {
         self.warnings.push(sentence);
     }
 
-    /// With a reason to rely upon it less.
+    /// Adds a reason to rely on the result less.
     pub fn doubt(&mut self, reason: Reason) {
         self.health.add(reason);
     }
 
-    /// The health is told where everybody looks.
+    /// Inserts the health wherever the account is read.
     pub(super) fn tell_health(&mut self) {
         let health = serde_json::to_value(self.health);
         if let (Some(report), Ok(health)) = (self.report.as_object_mut(), health) {
@@ -65,7 +65,7 @@ impl Account {
         self.fact("health", self.health.to_string());
     }
 
-    /// With what was concluded about the log.
+    /// Adds what was concluded about the log as facts.
     pub fn understood(&mut self, conclusions: &[String]) {
         for conclusion in conclusions {
             self.fact("log", conclusion);
@@ -73,34 +73,34 @@ impl Account {
     }
 }
 
-/// What the page shows.
+/// The results that the page shows.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Answer {
-    /// Numbers with their units, by name.
+    /// Results by name, with their units.
     pub facts: Vec<(String, String)>,
-    /// What a user should know.
+    /// Warnings for the user, one sentence each.
     pub warnings: Vec<String>,
-    /// Always the same ones in the same order for a recording, whatever the settings.
+    /// The figures: for a given recording always the same ones in the same order, whatever the settings.
     pub figures: Vec<Figure>,
-    /// Always the same ones in the same order for a recording, whatever the settings.
+    /// The tables: for a given recording always the same ones in the same order, whatever the settings.
     pub tables: Vec<Sheet>,
-    /// Settings that have no effect as the others are, and why.
+    /// Settings that have no effect given the others, and why.
     pub disabled: Vec<(&'static str, String)>,
-    /// The command that gives the same again.
+    /// The command that reproduces the answer.
     pub command: String,
-    /// The same settings in firmware, in Rust.
+    /// The equivalent configuration of firmware, in Rust.
     pub firmware: String,
-    /// What the recording shows before an estimator has seen it.
+    /// Findings about the recording itself, made before any estimator has run.
     pub findings: Vec<Finding>,
 }
 
 impl Answer {
-    /// With another fact.
+    /// Adds a fact.
     pub fn fact(&mut self, name: impl Into<String>, value: impl Into<String>) {
         self.facts.push((name.into(), value.into()));
     }
 
-    /// Points of all figures, and cells of all tables.
+    /// The number of points of all figures and cells of all tables.
     pub(super) fn points(&self) -> usize {
         let series = self.figures.iter().flat_map(|figure| &figure.series);
         let cells = self.tables.iter().map(|table| table.rows.len() * table.header.len());
@@ -108,24 +108,24 @@ impl Answer {
     }
 }
 
-/// Rows of a file that an option asks for.
+/// The rows of a file that an option asks for.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Table {
-    /// Names of the columns.
+    /// The names of the columns.
     pub header: Vec<String>,
-    /// A field a column.
+    /// The rows, with a field per column.
     pub rows: Vec<Vec<String>>,
-    /// Of a track: how far each row can be relied upon, as the estimator tells; the last column, when it is written.
+    /// For a track, how far each row can be relied upon according to the estimator; written as the last column.
     pub health: Vec<State>,
 }
 
 impl Table {
-    /// Without rows.
+    /// A table without rows.
     pub fn new(header: &[&str]) -> Self {
         Self { header: header.iter().map(|&name| name.to_owned()).collect(), ..Self::default() }
     }
 
-    /// With the health of each row as its last column, no better than `of_all`.
+    /// Appends the health of each row as the last column, limited to no better than `of_all`.
     pub(super) fn with_health(mut self, of_all: State) -> Self {
         if !self.health.is_empty() {
             self.header.push("health".to_owned());

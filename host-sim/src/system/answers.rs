@@ -1,4 +1,4 @@
-//! The last answers that were given: who looks closer, or compares two, does not wait for them again.
+//! A cache of the last answers: zooming in, or comparing two of them, does not compute them again.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -6,17 +6,17 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use super::account::Answer;
 use super::settings::Settings;
 
-/// As many as are compared.
+/// The number of answers kept: as many as are compared.
 const MOST: usize = 2;
-/// Points of an answer that is kept while something else is looked at: some 80 MB.
+/// The most points of an answer that is kept while another is computed or shown: some 80 MB.
 const MOST_POINTS: usize = 5_000_000;
 
-/// The latest at the end.
+/// Answers by their settings, the most recently used one last.
 #[derive(Debug, Default)]
 pub(super) struct Answers(Mutex<VecDeque<(Settings, Arc<Answer>)>>);
 
 impl Answers {
-    /// What was answered to these settings. If it has to be found anew there is room for it.
+    /// The cached answer to these settings. If there is none, large answers are dropped to make room for the new one.
     pub(super) fn of(&self, settings: &Settings) -> Option<Arc<Answer>> {
         let mut answers = self.lock();
         let Some(place) = answers.iter().position(|(known, _)| known == settings) else {
@@ -30,12 +30,12 @@ impl Answers {
         Some(answer)
     }
 
-    /// Lets go of what takes much memory: it can be found again.
+    /// Drops answers that take much memory: they can be computed again.
     pub(super) fn forget_large(&self) {
         self.lock().retain(|(_, answer)| answer.points() <= MOST_POINTS);
     }
 
-    /// Keeps an answer, and gives it back.
+    /// Stores an answer and returns it.
     pub(super) fn keep(&self, settings: &Settings, answer: Answer) -> Arc<Answer> {
         let answer = Arc::new(answer);
         let mut answers = self.lock();
@@ -48,7 +48,7 @@ impl Answers {
     }
 
     fn lock(&self) -> MutexGuard<'_, VecDeque<(Settings, Arc<Answer>)>> {
-        // Nothing is left half done in there.
+        // A panic in another thread cannot leave the contents inconsistent.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

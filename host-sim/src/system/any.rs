@@ -1,4 +1,4 @@
-//! A system of which the commands know no more than its face.
+//! The type-erased interface of a system.
 
 use std::fmt;
 use std::path::Path;
@@ -19,18 +19,18 @@ use super::settings::Settings;
 use crate::report::Chapter;
 use crate::{Error, output};
 
-/// What came of an experiment.
+/// The results of an experiment.
 #[derive(Debug, Clone)]
 pub struct Experiment {
-    /// What `--json` prints.
+    /// The object that `--json` prints.
     pub report: Value,
-    /// What the terminal shows.
+    /// The text that the terminal shows.
     pub text: String,
-    /// The part of the report, if it was asked for.
+    /// The system's chapter of the report, if requested.
     pub chapter: Option<Chapter>,
 }
 
-/// A [`System`] of which the commands know no more than its face.
+/// A type-erased [`System`], as the commands see it.
 pub trait AnySystem: Sync {
     /// [`System::NAME`].
     fn name(&self) -> &'static str;
@@ -48,7 +48,7 @@ pub trait AnySystem: Sync {
     fn hears_bytes(&self) -> bool;
     /// [`System::RECORDED`].
     fn recorded(&self) -> &'static [Study];
-    /// [`System::settings`] of any recording.
+    /// [`System::settings`] without a particular recording.
     fn settings(&self) -> Vec<Setting>;
     /// [`System::cell`].
     fn cell(&self) -> Vec<Setting>;
@@ -62,13 +62,13 @@ pub trait AnySystem: Sync {
     /// [`System::fits`].
     fn fits(&self, field: &str, path: &Path, files: &Files) -> bool;
 
-    /// Reads a recording, or makes a synthetic one.
+    /// Reads a recording, or generates a synthetic one.
     ///
     /// # Errors
     /// As [`System::read`] and [`System::synthetic`].
     fn open(&self, source: Source, settings: &Settings) -> Result<Box<dyn Opened>, Error>;
 
-    /// Refuses settings that would change nothing.
+    /// Refuses settings that would have no effect.
     ///
     /// # Errors
     /// [`Error::Usage`] with the reason.
@@ -77,13 +77,13 @@ pub trait AnySystem: Sync {
     /// [`System::trials`].
     ///
     /// # Errors
-    /// As there.
+    /// Those of [`System::trials`].
     fn trials(&self, run: &RunOptions, cell: &Settings) -> Result<Vec<Block>, Error>;
 
-    /// [`System::experiment`], and the chapter if it is asked for.
+    /// [`System::experiment`], and the chapter if requested.
     ///
     /// # Errors
-    /// As there.
+    /// Those of [`System::experiment`].
     fn experiment(
         &self,
         run: &RunOptions,
@@ -95,7 +95,7 @@ pub trait AnySystem: Sync {
     /// [`System::online`].
     ///
     /// # Errors
-    /// As there.
+    /// Those of [`System::online`].
     fn online(&self, settings: &Settings, files: &Files) -> Result<Option<Arc<dyn Plan>>, Error>;
 }
 
@@ -197,10 +197,10 @@ impl<S: System> AnySystem for S {
     }
 }
 
-/// All trials that count, on all threads.
+/// Runs all trials on all threads and returns their samples.
 ///
 /// # Errors
-/// The sentence of a trial that gives nothing.
+/// The sentence of the first trial that fails.
 pub fn tried(blocks: &[Block]) -> Result<Vec<Samples>, Error> {
     let bar = output::progress(blocks.iter().map(|block| block.trials).sum(), "trials");
     let samples = blocks.iter().map(|block| block.run(&|| bar.inc(1))).collect::<Result<_, _>>();
@@ -208,10 +208,10 @@ pub fn tried(blocks: &[Block]) -> Result<Vec<Samples>, Error> {
     Ok(samples?)
 }
 
-/// A system's experiment, from its first trial to what came of it.
+/// Runs a system's experiment completely, from its trials to its result.
 ///
 /// # Errors
-/// As [`System::trials`].
+/// Those of [`System::trials`].
 pub fn experiment<S: System>(run: &RunOptions, cell: &Settings) -> Result<S::Experiment, Error> {
     S::experiment(run, cell, &tried(&S::trials(run, cell)?)?)
 }

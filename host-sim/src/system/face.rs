@@ -1,4 +1,4 @@
-//! The one face of a system.
+//! The common interface of all systems.
 
 use std::fmt::Display;
 use std::path::Path;
@@ -20,62 +20,63 @@ use crate::Error;
 use crate::report::Chapter;
 use crate::stream::Stream;
 
-/// A table that a replay writes where it is asked to.
+/// A table that a replay can write.
 #[derive(Debug, Clone, Copy)]
 pub struct OutputField {
-    /// The option's name.
+    /// The name of the option.
     pub name: &'static str,
-    /// What stands in it, with its columns.
+    /// The contents of the table, with its columns.
     pub help: &'static str,
-    /// Endings of a file that say what it is written as, the table's first.
+    /// The file name endings that select a format, the table's first.
     pub endings: &'static [&'static str],
 }
 
 /// How much of a track is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Detail {
-    /// What the account needs.
+    /// As much as the account needs.
     Result,
     /// Every moment, to be drawn or written.
     Every,
 }
 
-/// A system: sensors, estimator, and what is asked of them.
+/// A system: its sensors, its estimator, and the questions asked of them.
 pub trait System: Sync + 'static {
-    /// Its name on the command line.
+    /// The name on the command line.
     const NAME: &'static str;
     /// What it does, in a few words.
     const TITLE: &'static str;
-    /// The paper it is from.
+    /// The paper that the system is from.
     const PAPER: &'static str;
-    /// The files that make a recording.
+    /// The files that make up a recording.
     const FILES: &'static [FileField];
-    /// Synthetic recordings that need no file: name and what people call it, the default first.
+    /// Synthetic recordings that need no file: name and description, the default first.
     const SYNTHETIC: &'static [(&'static str, &'static str)];
-    /// Tables that a replay writes where it is asked to.
+    /// The tables that a replay can write.
     const OUTPUTS: &'static [OutputField];
-    /// Settings that say something about the recording itself: its [`check`](Self::check) depends on no others.
+    /// Settings that describe the recording itself: its [`check`](Self::check) depends on no others.
     const CHECKED: &'static [&'static str] = &[];
-    /// Figures of a stream that is followed while it comes; none if no estimator follows one.
+    /// The figures of a live stream; none if no estimator follows one.
     const PANELS: &'static [Panel] = &[];
-    /// Whether the stream that is followed is the device's own, in place of telemetry: its estimator hears the bytes.
+    /// Whether a live stream consists of the device's own bytes in place of telemetry, which the estimator decodes
+    /// itself.
     const HEARS_BYTES: bool = false;
-    /// Recordings that its results are told of, for the report; none if there are none.
+    /// The recordings whose results the report shows; none if there are none.
     const RECORDED: &'static [Study] = &[];
 
-    /// What is read.
+    /// A recording in memory.
     type Recording: Send + Sync;
-    /// What the estimator made of it.
+    /// The estimator's output for a recording.
     type Trace: Send + Sync;
-    /// What came of the paper's experiment.
+    /// The result of the paper's experiment.
     type Experiment: Serialize + Display;
 
-    /// What can be set: the options of `replay` and `live`, and the page's controls. What depends on the
-    /// recording is narrower where that is known; a default that depends on it is none.
+    /// The available settings: the options of `replay` and `live`, and the page's controls. Ranges that depend on the
+    /// recording are narrower if it is known; a default that depends on the recording is `None`.
     fn settings(recording: Option<&Self::Recording>) -> Vec<Setting>;
 
-    /// Why a setting has no effect as the recording and the others are; none if it has. Without a recording all
-    /// that could be read are meant.
+    /// Why a setting has no effect given the recording and the other settings; `None` if it has one. Without a
+    /// recording, the answer holds for all possible ones.
     fn idle(
         _recording: Option<&Self::Recording>,
         _settings: &Settings,
@@ -84,58 +85,59 @@ pub trait System: Sync + 'static {
         None
     }
 
-    /// Why these settings give no tables and no streams to write, in words that complete `--track …`; none if
-    /// they do.
+    /// Why these settings give no tables and no streams to write, in words that complete `--track …`; `None` if they
+    /// do.
     fn lacks_output(_settings: &Settings) -> Option<&'static str> {
         None
     }
 
-    /// Reads a recording. Settings tell no more than how to read.
+    /// Reads a recording. The settings affect only how it is read.
     ///
     /// # Errors
-    /// The file, the line, and what was expected there.
+    /// An error that names the file, the line, and what was expected there.
     fn read(files: &Files, settings: &Settings) -> Result<Self::Recording, Error>;
 
-    /// Whether a file can be what a field of the [`FILES`](Self::FILES) holds: it is read as that, beside the `files` that
-    /// are known already.
+    /// Whether a file can be what a field of the [`FILES`](Self::FILES) holds: it is read as such, together with the
+    /// `files` that are already known.
     fn fits(field: &str, path: &Path, files: &Files) -> bool;
 
-    /// A synthetic recording by name.
+    /// Generates a synthetic recording by name.
     ///
     /// # Errors
     /// [`Error::Usage`] if there is none of that name.
     fn synthetic(name: &str) -> Result<Self::Recording, Error>;
 
-    /// What the recording shows before an estimator has seen it: what is measured how often, what is missing, what
-    /// contradicts itself, what comes of that and what to do.
+    /// Findings about the recording itself, made before any estimator has run: what is measured how often, what is
+    /// missing, what is contradictory, the consequences and the remedies.
     fn check(_recording: &Self::Recording, _settings: &Settings) -> Vec<Finding> {
         Vec::new()
     }
 
-    /// Feeds the estimator.
+    /// Runs the estimator over a recording.
     ///
     /// # Errors
-    /// One sentence, if recording and settings give nothing.
+    /// A one-sentence error if the recording and the settings give no result.
     fn track(
         recording: &Self::Recording,
         settings: &Settings,
         detail: Detail,
     ) -> Result<Self::Trace, Error>;
 
-    /// What came of it.
+    /// Evaluates a track.
     ///
     /// # Errors
-    /// As [`track`](Self::track).
+    /// Those of [`track`](Self::track).
     fn account(
         recording: &Self::Recording,
         settings: &Settings,
         trace: &Self::Trace,
     ) -> Result<Account, Error>;
 
-    /// Figures for the page, and facts of what they compare with. Always the same figures in the same order.
+    /// Adds the figures of the page to `answer`, and facts about what they compare with: always the same figures in the
+    /// same order.
     ///
     /// # Errors
-    /// As [`track`](Self::track).
+    /// Those of [`track`](Self::track).
     fn figures(
         recording: &Self::Recording,
         settings: &Settings,
@@ -143,7 +145,8 @@ pub trait System: Sync + 'static {
         answer: &mut Answer,
     ) -> Result<(), Error>;
 
-    /// The text of one of the [`OUTPUTS`](Self::OUTPUTS) as the ending of its file asks for; none: the table.
+    /// The text of one of the [`OUTPUTS`](Self::OUTPUTS) in the format that the file name's ending selects; `None` if
+    /// that is the table.
     fn text(
         _output: &str,
         _ending: &str,
@@ -161,37 +164,37 @@ pub trait System: Sync + 'static {
         trace: &Self::Trace,
     ) -> Table;
 
-    /// What the sensors said, the estimate, and the truth as far as it is known, for other programs.
+    /// The sensor data, the estimate, and the truth as far as it is known, for other programs.
     fn streams(
         recording: &Self::Recording,
         settings: &Settings,
         trace: &Self::Trace,
     ) -> Vec<Stream>;
 
-    /// The same settings in firmware: a `Config` literal of the system's crate that says what differs from the
-    /// default. What firmware has no setting for is left out.
+    /// The equivalent configuration of firmware: a `Config` literal of the system's crate with what differs from the
+    /// default. Settings that firmware lacks are left out.
     fn firmware(recording: Option<&Self::Recording>, settings: &Settings) -> String;
 
-    /// What can be set of the experiment.
+    /// The settings of the experiment.
     fn cell() -> Vec<Setting> {
         Vec::new()
     }
 
-    /// Why a setting of the experiment has no effect as the others are; none if it has.
+    /// Why a setting of the experiment has no effect given the others; `None` if it has one.
     fn cell_idle(_cell: &Settings, _name: &str) -> Option<Idle> {
         None
     }
 
-    /// What the paper's experiment tries on synthetic streams, or what of it the `cell` asks for.
+    /// The trials of the paper's experiment on synthetic streams, or the part of it that the `cell` selects.
     ///
     /// # Errors
-    /// [`Error::Usage`] for options that it does not have.
+    /// [`Error::Usage`] for options that the experiment does not have.
     fn trials(run: &RunOptions, cell: &Settings) -> Result<Vec<Block>, Error>;
 
-    /// What comes of the numbers of these trials.
+    /// Evaluates the samples of the trials.
     ///
     /// # Errors
-    /// As [`trials`](Self::trials).
+    /// Those of [`trials`](Self::trials).
     fn experiment(
         run: &RunOptions,
         cell: &Settings,
@@ -201,46 +204,47 @@ pub trait System: Sync + 'static {
     /// The system's part of the report.
     ///
     /// # Errors
-    /// None that the experiment itself did not have.
+    /// No others than those of the experiment.
     fn chapter(experiment: &Self::Experiment) -> Result<Chapter, Error>;
 
-    /// What follows a stream while it comes; none if no estimator does.
+    /// The plan of an estimator that follows a live stream; `None` if there is none.
     ///
     /// # Errors
-    /// Whatever is wrong with files and settings.
+    /// Errors in the files and settings.
     fn online(_settings: &Settings, _files: &Files) -> Result<Option<Arc<dyn Plan>>, Error> {
         Ok(None)
     }
 
-    /// The command that finds where a system's stations are, from what they measure of each other; none if there is none.
+    /// The command that determines the positions of a system's stations from measurements between them; `None` if there
+    /// is none.
     fn survey() -> Option<Box<dyn Calibration>> {
         None
     }
 
-    /// The command that finds what the sensors measure wrong; none if there is none.
+    /// The command that determines the errors of the sensors; `None` if there is none.
     fn calibration() -> Option<Box<dyn Calibration>> {
         None
     }
 
-    /// The command that finds the model of what moves; none if there is none.
+    /// The command that identifies the model of the moving object; `None` if there is none.
     fn identification() -> Option<Box<dyn Calibration>> {
         None
     }
 }
 
-/// A command that finds what a system's sensors measure wrong, or how what carries them moves.
+/// A command that determines the errors of a system's sensors, or how their carrier moves.
 pub trait Calibration {
-    /// Its options, and what it does.
+    /// The command line of the command: its description and options.
     fn command(&self) -> clap::Command;
 
-    /// Reads, calibrates, writes and prints.
+    /// Reads the input, calibrates, writes the result and prints it.
     ///
     /// # Errors
-    /// Whatever is wrong with the options or the files; then nothing is written.
+    /// Errors in the options or the files; nothing is then written.
     fn run(&self, matches: &clap::ArgMatches) -> Result<(), Error>;
 
-    /// What looks at a stream while it is made for a calibration, tells what to do next, and writes the calibration to a
-    /// file at its end; none if only a log will do.
+    /// A plan that follows a live recording made for a calibration, says what to do next, and writes the calibration to
+    /// a file at the end; `None` if only a log will do.
     fn watch(&self, _to: &Path) -> Option<Arc<dyn Plan>> {
         None
     }

@@ -1,4 +1,4 @@
-//! Where a recording comes from.
+//! The sources of a recording.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -12,61 +12,61 @@ use super::settings::Settings;
 use crate::Error;
 use crate::text::printable_path;
 
-/// A file that belongs to a recording.
+/// A file that is part of a recording.
 ///
 /// A setting of the same name is an alternative: `--height 0.1` or `--height FILE`.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 #[expect(clippy::struct_excessive_bools, reason = "each says something of its own")]
 pub struct FileField {
-    /// Its name everywhere: `log` is `--log`.
+    /// The name used everywhere: `log` is `--log`.
     pub name: &'static str,
-    /// What it holds, with its columns.
+    /// The contents of the file, with its columns.
     #[serde(rename = "label")]
     pub help: &'static str,
-    /// Whether there is no recording without it.
+    /// Whether the file is required for a recording.
     pub required: bool,
-    /// Whether there may be more than one.
+    /// Whether there may be more than one such file.
     pub several: bool,
-    /// Whether it is read for a stream that is followed while it comes.
+    /// Whether the file is also read for a live stream.
     #[serde(skip)]
     pub in_live: bool,
-    /// Whether it may be the log of a device that nobody here knows: its columns and units are found, or said.
+    /// Whether the file may be a log of an unknown device, whose columns and units are inferred or given by the user.
     pub imported: bool,
 }
 
 impl FileField {
-    /// A file without which there is no recording.
+    /// A required file.
     pub const fn required(name: &'static str, help: &'static str) -> Self {
         Self { name, help, required: true, several: false, in_live: false, imported: false }
     }
 
-    /// A file that may be missing.
+    /// An optional file.
     pub const fn optional(name: &'static str, help: &'static str) -> Self {
         Self { name, help, required: false, several: false, in_live: false, imported: false }
     }
 
-    /// Perhaps more than one.
+    /// Allows more than one such file.
     #[must_use]
     pub const fn several(mut self) -> Self {
         self.several = true;
         self
     }
 
-    /// Of a stream that is followed while it comes, too.
+    /// Makes the file available for live streams as well.
     #[must_use]
     pub const fn live(mut self) -> Self {
         self.in_live = true;
         self
     }
 
-    /// Of any device.
+    /// Accepts logs of unknown devices.
     #[must_use]
     pub const fn imported(mut self) -> Self {
         self.imported = true;
         self
     }
 
-    /// The option of the command line.
+    /// The option of the command line for this file.
     pub fn argument(&self, settings: &[Setting]) -> Arg {
         let arg = Arg::new(self.name).long(self.name).help(self.help);
         let alternative = settings.iter().find(|setting| setting.name == self.name);
@@ -82,21 +82,22 @@ impl FileField {
     }
 }
 
-/// Where the files of a recording lie, by the names of their fields, and how they are to be read.
+/// The paths of a recording's files by the names of their fields, and how they are to be read.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Files {
     paths: BTreeMap<String, Vec<PathBuf>>,
-    /// What the user says about an imported log.
+    /// The user's description of an imported log.
     pub reading: Reading,
-    /// What recordings beside this one have read already.
+    /// Data that related recordings have already read.
     pub shared: Shared,
 }
 
 impl Files {
-    /// What the command line names. A text that is a value of the setting of the same name is given to that.
+    /// The files that the command line names. A text that is a value of the setting of the same name goes to that
+    /// setting.
     ///
     /// # Errors
-    /// As [`Reading::matched`].
+    /// Those of [`Reading::matched`].
     pub fn matched(
         fields: &[FileField],
         matches: &ArgMatches,
@@ -117,7 +118,7 @@ impl Files {
         Ok(files)
     }
 
-    /// The same files, without what was read of them.
+    /// The same files, without the data already read from them.
     #[must_use]
     pub fn without_what_was_read(&self) -> Self {
         Self { shared: Shared::default(), ..self.clone() }
@@ -128,7 +129,7 @@ impl Files {
         self.paths.entry(field.into()).or_default().push(path.into());
     }
 
-    /// The file of a field, if there is one.
+    /// The first file of a field, if there is one.
     pub fn one(&self, field: &str) -> Option<&Path> {
         self.all(field).first().map(PathBuf::as_path)
     }
@@ -138,15 +139,15 @@ impl Files {
         self.paths.get(field).map_or(&[], Vec::as_slice)
     }
 
-    /// All files.
+    /// All files of all fields.
     pub fn paths(&self) -> impl Iterator<Item = &PathBuf> + Clone {
         self.paths.values().flatten()
     }
 
-    /// The file of a field that must be there.
+    /// The file of a field, which is required.
     ///
     /// # Errors
-    /// [`Error::Usage`] if it is not.
+    /// [`Error::Usage`] if it is missing.
     pub fn required(&self, field: &str) -> Result<&Path, Error> {
         self.one(field).ok_or_else(|| Error::Usage(format!("a file is needed: --{field}")))
     }
@@ -154,7 +155,7 @@ impl Files {
     /// Refuses files that exclude each other.
     ///
     /// # Errors
-    /// [`Error::Usage`] if `one` is there and any of the others is.
+    /// [`Error::Usage`] if both `one` and any of the others are given.
     pub fn exclude(&self, one: &str, others: &[&str]) -> Result<(), Error> {
         let other = others.iter().find(|other| self.one(other).is_some());
         match (self.one(one), other) {
@@ -166,17 +167,17 @@ impl Files {
     }
 }
 
-/// Where a recording comes from.
+/// The source of a recording.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Source {
-    /// Files.
+    /// Recorded files.
     Files(Files),
-    /// A synthetic one, by name.
+    /// A synthetic recording, by name.
     Synthetic(String),
 }
 
 impl Source {
-    /// Options of the command line that name it; uploaded files by their names alone.
+    /// The options of the command line that name the source; uploaded files appear by their file names only.
     pub fn arguments(&self) -> Vec<String> {
         match self {
             Self::Synthetic(name) => vec!["--synthetic".to_owned(), name.clone()],

@@ -6,31 +6,31 @@ use crate::Error;
 /// Why a setting has no effect.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Idle {
-    /// It belongs to something else, and is refused: `is for --mode kinematic`.
+    /// The setting belongs to another choice, and is refused: `is for --mode kinematic`.
     Foreign(String),
-    /// It is so anyway.
+    /// The setting describes what is already the case.
     Implied(String),
 }
 
 impl Idle {
-    /// It belongs to something else.
+    /// The setting belongs to another choice, for this `reason`.
     pub fn foreign(reason: impl Into<String>) -> Self {
         Self::Foreign(reason.into())
     }
 
-    /// It is so anyway.
+    /// The setting describes what is already the case, for this `reason`.
     pub fn implied(reason: impl Into<String>) -> Self {
         Self::Implied(reason.into())
     }
 
-    /// Why.
+    /// The reason.
     pub fn reason(&self) -> &str {
         let (Self::Foreign(reason) | Self::Implied(reason)) = self;
         reason
     }
 }
 
-/// Refuses the first given setting that belongs to something else.
+/// Refuses the first given setting that belongs to another choice.
 pub(super) fn refuse(
     settings: &Settings,
     idle: impl Fn(&str) -> Option<Idle>,

@@ -1,35 +1,35 @@
-//! What values a setting has.
+//! The kinds of values that a setting takes.
 
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 
-/// What values a setting has.
+/// The kind of values that a setting takes.
 #[derive(Debug, Clone)]
 pub enum Kind {
     /// A number within bounds.
     Number(Number),
-    /// One of a few.
+    /// One of several named values.
     Choice {
-        /// All, in the order in which they are shown.
+        /// All values, in the order in which they are shown.
         of: Vec<Named>,
-        /// Which if none is given.
+        /// The name of the default.
         default: String,
     },
-    /// Any of a few.
+    /// Any subset of several named values.
     Set {
-        /// All, in the order in which they are shown; none is the default.
+        /// All values, in the order in which they are shown; the default is the empty set.
         of: Vec<Named>,
     },
     /// On or off.
     Switch {
-        /// Which if nothing is said. What is on at first is an option `--no-…`.
+        /// The default. A switch that is on by default is turned off by an option `--no-…`.
         default: bool,
     },
-    /// A text of a certain form; without one the estimator does as it likes.
+    /// A text of a certain form; without one the estimator uses its own value.
     Text {
-        /// What it looks like: `X,Y,Z`.
+        /// The form of the text: `X,Y,Z`.
         form: &'static str,
-        /// Says what was expected if it is not of that form.
+        /// Validates a text; the error says what was expected.
         check: fn(&str) -> Result<(), String>,
     },
 }
@@ -37,32 +37,32 @@ pub enum Kind {
 /// A number within bounds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Number {
-    /// Its unit; may be empty.
+    /// The unit; may be empty.
     pub unit: &'static str,
-    /// The least value.
+    /// The minimum.
     pub min: f64,
-    /// The greatest value.
+    /// The maximum.
     pub max: f64,
-    /// From one position of a slider to the next; of a logarithmic one in decades.
+    /// The step of a slider; of a logarithmic one in decades.
     pub step: f64,
-    /// Whether decades are equally long on a slider.
+    /// Whether the slider is logarithmic.
     pub logarithmic: bool,
-    /// Whether it is a time or step that can be played.
+    /// Whether the setting is a time or step that can be played.
     pub playable: bool,
-    /// Which if none is given; none leaves it to the estimator, the recording or other settings.
+    /// The default; `None` leaves the value to the estimator, the recording or other settings.
     pub default: Option<f64>,
-    /// Where a slider stands at first: at the default, or at what the estimator would take.
+    /// The initial position of the slider: the default, or the value that the estimator would use.
     pub initially: f64,
 }
 
-/// A value with a name.
+/// A named value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Named {
-    /// On the command line and in settings.
+    /// The name on the command line and in settings.
     pub name: String,
-    /// What it is, for people.
+    /// The description for people.
     pub label: String,
-    /// Earlier names.
+    /// Earlier names of the value.
     pub aliases: Vec<String>,
 }
 
@@ -70,18 +70,18 @@ pub struct Named {
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// Of a switch.
+    /// The value of a switch.
     Switch(bool),
-    /// Of a number.
+    /// The value of a number.
     Number(f64),
-    /// Of a choice or a text.
+    /// The value of a choice or a text.
     Text(String),
-    /// Of a set.
+    /// The members of a set.
     Set(Vec<String>),
 }
 
 impl Number {
-    /// A slider ends on the last whole step, give or take its rounding.
+    /// Whether a value is within the bounds, with a tolerance for the rounding of a slider's last step.
     pub(super) fn takes(&self, value: f64) -> bool {
         let slack = 1e-9 * self.max.abs().max(self.min.abs());
         (self.min - slack..=self.max + slack).contains(&value)
@@ -104,7 +104,7 @@ impl Named {
         Self { name: name.to_owned(), label: label.to_owned(), aliases: Vec::new() }
     }
 
-    /// Of an enum's variant; none if the command line does not show it.
+    /// The named value of an enum's variant; `None` if it is hidden on the command line.
     pub(super) fn of<T: ValueEnum>(variant: &T) -> Option<Self> {
         let value = variant.to_possible_value()?;
         let name = value.get_name().to_owned();
@@ -129,7 +129,7 @@ pub(super) fn names(of: &[Named]) -> String {
     of.iter().map(|named| named.name.as_str()).collect::<Vec<_>>().join(", ")
 }
 
-/// A unit as it is spoken, where that is short.
+/// The unit in words, where they are short.
 pub(super) fn in_words(unit: &'static str) -> &'static str {
     match unit {
         "m" => "metres",

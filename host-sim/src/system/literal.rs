@@ -1,10 +1,10 @@
-//! Settings as firmware says them.
+//! Settings in the form of firmware source.
 
 use std::fmt;
 
 use kestirim_replay::ScalarKind;
 
-/// A literal of a crate's `Config`, with what differs from where it begins.
+/// A Rust literal of a crate's `Config`, with the fields that differ from its base.
 #[derive(Debug, Clone)]
 pub struct Literal {
     imports: Vec<String>,
@@ -16,8 +16,8 @@ pub struct Literal {
 }
 
 impl Literal {
-    /// Of `config`, such as `Config::<f32>`, that is otherwise `base`, such as `Config::default()`, with what is
-    /// to be imported for both.
+    /// A literal of type `config`, such as `Config::<f32>`, based on `base`, such as `Config::default()`, with the
+    /// imports that both need.
     pub fn new(imports: &str, scalar: ScalarKind, config: &str, base: &str) -> Self {
         Self {
             imports: vec![imports.to_owned()],
@@ -38,7 +38,7 @@ impl Literal {
         }
     }
 
-    /// A number of the estimator's type.
+    /// A Rust literal of a number of the estimator's type.
     pub fn number(scalar: ScalarKind, value: f64) -> String {
         match scalar {
             ScalarKind::Fixed => format!("Q12_20::from_f64({value:?})"),
@@ -46,28 +46,28 @@ impl Literal {
         }
     }
 
-    /// With something else to import.
+    /// Adds an import.
     #[must_use]
     pub fn import(mut self, path: &str) -> Self {
         self.imports.push(path.to_owned());
         self
     }
 
-    /// With a field, in Rust.
+    /// Adds a field with its value in Rust.
     #[must_use]
     pub fn field(mut self, name: &str, value: impl Into<String>) -> Self {
         self.fields.push((name.to_owned(), value.into()));
         self
     }
 
-    /// With a line after the literal.
+    /// Adds a line after the literal.
     #[must_use]
     pub fn then(mut self, line: String) -> Self {
         self.rest.push(line);
         self
     }
 
-    /// With a number if there is one.
+    /// Adds a number field if there is a value.
     #[must_use]
     pub fn number_field(self, name: &str, value: Option<f64>) -> Self {
         match value {

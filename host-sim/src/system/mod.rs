@@ -1,7 +1,7 @@
-//! What a system is to the program: one face, which every command knows and no system writes twice.
+//! The interface of a system to the program: every command uses it, and no system implements a command itself.
 //!
-//! A [`System`] says once which files it reads, what can be set, how a recording is tracked and what came of it.
-//! The command line, the page and a live stream are made from that, for any system.
+//! A [`System`] declares once which files it reads, which settings it has, and how a recording is tracked and
+//! evaluated. The command line, the page and live streams are derived from that for every system.
 
 mod account;
 mod answers;

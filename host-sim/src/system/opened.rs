@@ -1,4 +1,4 @@
-//! A recording that is open, and what can be tried on it.
+//! An open recording, and the evaluations that can be run on it.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -14,12 +14,12 @@ use super::setting::Setting;
 use super::settings::Settings;
 use crate::{Error, mcap, output, text};
 
-/// What a replay is to write.
+/// The files that a replay is to write.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Wanted {
-    /// Options and the files for their tables.
+    /// The options of tables with the files to write them to.
     pub tables: Vec<(&'static str, PathBuf)>,
-    /// A file for the streams.
+    /// The file to write the streams to.
     pub mcap: Option<PathBuf>,
 }
 
@@ -36,38 +36,38 @@ impl Wanted {
     }
 }
 
-/// A recording of any system, open.
+/// An open recording of any system.
 pub trait Opened: Send + Sync {
-    /// What can be set.
+    /// The available settings.
     fn settings(&self) -> Vec<Setting>;
 
-    /// What came of it, and the files that are wanted.
+    /// Replays the recording, writes the files that are wanted, and returns the account.
     ///
     /// # Errors
-    /// One sentence, if recording and settings give nothing; settings that would change nothing; files that
+    /// A one-sentence error if the recording and the settings give no result, a setting would have no effect, or a file
     /// cannot be written.
     fn replay(&self, settings: &Settings, wanted: &Wanted) -> Result<Account, Error>;
 
-    /// What the recording shows before an estimator has seen it.
+    /// Findings about the recording itself, made before any estimator has run.
     ///
     /// # Errors
-    /// [`Error::Usage`] for settings that would change nothing.
+    /// [`Error::Usage`] for settings that would have no effect.
     fn check(&self, settings: &Settings) -> Result<Vec<Finding>, Error>;
 
-    /// What the page shows, and the settings that have no effect in it.
+    /// The answer that the page shows, with the settings that have no effect.
     ///
     /// # Errors
-    /// One sentence, if recording and settings give nothing.
+    /// A one-sentence error if the recording and the settings give no result.
     fn answer(&self, settings: &Settings) -> Result<Arc<Answer>, Error>;
 
-    /// The settings without those that would change nothing.
+    /// The settings without those that have no effect.
     fn effective(&self, settings: &Settings) -> Settings;
 
-    /// Lets go of answers that take much memory.
+    /// Drops cached answers that take much memory.
     fn forget_large(&self);
 }
 
-/// A recording, and the last track that was made of it.
+/// A recording with the last track computed from it.
 struct Open<S: System> {
     recording: S::Recording,
     source: Source,
@@ -76,7 +76,7 @@ struct Open<S: System> {
     findings: Mutex<Option<(Settings, Vec<Finding>)>>,
 }
 
-/// How a track was made, and the track.
+/// The settings and detail of a track, and the track.
 struct Last<S: System> {
     settings: Settings,
     detail: Detail,
@@ -89,7 +89,7 @@ pub(super) fn open<S: System>(recording: S::Recording, source: Source) -> Box<dy
 }
 
 impl<S: System> Open<S> {
-    /// The track, made anew only if other settings make another one.
+    /// The track, computed again only if the settings or the detail require another one.
     fn trace(&self, settings: &Settings, detail: Detail) -> Result<Arc<S::Trace>, Error> {
         let key = settings.without_views();
         {
@@ -105,7 +105,7 @@ impl<S: System> Open<S> {
         Ok(trace)
     }
 
-    /// What the recording shows, looked for anew only if something else is said about it.
+    /// The findings about the recording, computed again only if settings that describe it change.
     fn findings(&self, settings: &Settings) -> Vec<Finding> {
         let key = settings.without(|name| !S::CHECKED.contains(&name));
         let mut last = self.findings.lock().unwrap_or_else(PoisonError::into_inner);
@@ -119,7 +119,7 @@ impl<S: System> Open<S> {
         }
     }
 
-    /// What came of it, with what the recording itself shows.
+    /// The account of a track, with the findings about the recording.
     fn account(
         &self,
         settings: &Settings,
@@ -141,7 +141,7 @@ impl<S: System> Open<S> {
         S::idle(Some(&self.recording), settings, name)
     }
 
-    /// Settings that have no effect as the others are, and why.
+    /// Settings that have no effect given the others, and why.
     fn disabled(&self, settings: &Settings) -> Vec<(&'static str, String)> {
         let table = settings.table().iter();
         let reason = |name| Some((name, self.idle(settings, name)?.reason().to_owned()));
@@ -198,7 +198,7 @@ impl<S: System> Opened for Open<S> {
             return Ok(known);
         }
         let (asked, disabled) = (settings, self.disabled(settings));
-        // A page that was left with them sends them still, and the command line refuses them.
+        // A page that was left open still sends disabled settings, which the command line refuses.
         let settings = &without(settings, &disabled);
         let trace = self.trace(settings, Detail::Every)?;
         let (Account { facts, warnings, .. }, findings) = self.account(settings, &trace)?;
@@ -219,7 +219,7 @@ impl<S: System> Opened for Open<S> {
     }
 }
 
-/// Settings without those that are disabled.
+/// The settings without the disabled ones.
 fn without(settings: &Settings, disabled: &[(&'static str, String)]) -> Settings {
     settings.without(|name| disabled.iter().any(|(idle, _)| *idle == name))
 }

@@ -1,4 +1,4 @@
-//! Where the results of a run go besides the terminal.
+//! The outputs of a run besides the terminal.
 
 use std::path::{Path, PathBuf};
 
@@ -24,15 +24,15 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Whether anything is to be written to files.
+    /// Whether any file is to be written.
     pub const fn any_file(&self) -> bool {
         self.csv.is_some() || self.mcap.is_some() || self.report.is_some()
     }
 
-    /// Refuses options that contradict each other, and what cannot be written.
+    /// Refuses options that contradict each other, and files that cannot be written.
     ///
     /// # Errors
-    /// [`Error::Usage`] and [`Error::Write`].
+    /// [`Error::Usage`] for contradicting options, [`Error::Write`] for unwritable files.
     pub fn check(&self) -> Result<(), Error> {
         output::refuse_twice(&[("--csv", self.csv.as_deref()), ("--mcap", self.mcap.as_deref())])?;
         let mut files = self.csv.iter().chain(&self.mcap);
@@ -40,7 +40,7 @@ impl Outputs {
         self.report.as_deref().map_or(Ok(()), output::refuse_unwritable_folder)
     }
 
-    /// Of one study of several, files and folders of its own: `a.csv` is `a-0.csv`.
+    /// Separate outputs for one study of several: `a.csv` becomes `a-0.csv`.
     #[must_use]
     pub fn of_study(&self, number: usize, of: usize) -> Self {
         let own = |path: &PathBuf| {
@@ -54,7 +54,7 @@ impl Outputs {
         Self { json: *json, csv, mcap, report }
     }
 
-    /// Writes the files that were asked for.
+    /// Writes the requested files.
     ///
     /// # Errors
     /// [`Error::Write`].
@@ -73,7 +73,7 @@ impl Outputs {
     }
 }
 
-/// Tells where the page is.
+/// Prints the path of the page on standard error.
 pub fn say_where(page: &Path) {
     output::warn(&format!("report: {}", crate::text::printable_path(page)));
 }

@@ -1,4 +1,4 @@
-//! What a user says about a log that does not say it by itself.
+//! The user's description of a log that does not describe itself.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use kestirim_import::{Format, Options};
 
 use crate::Error;
 
-/// Options with a text, the form of the text, and what they say.
+/// The options with a text: name, form of the text and help.
 const TEXTS: [(&str, &str, &str); 4] = [
     (
         "columns",
@@ -26,14 +26,14 @@ const TEXTS: [(&str, &str, &str); 4] = [
         "Which of several sensors in the file: a topic of ROS or MCAP, the number of an ArduPilot, PX4 or OpenShoe sensor, a transmitter in the column user of a flight [default: the only one, or 0]",
     ),
 ];
-/// The option without one.
+/// The name of the only option without a text.
 const STRICT: &str = "strict";
 
-/// What a user says about a log.
+/// The user's description of a log.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Reading {
     options: Box<Options>,
-    /// As it was said.
+    /// The texts as given.
     given: BTreeMap<&'static str, String>,
 }
 
@@ -56,15 +56,15 @@ impl Reading {
         TEXTS.into_iter().map(|(name, ..)| name)
     }
 
-    /// For the page: each option with a text, and what it says.
+    /// Each option with a text and its help, for the page.
     pub fn forms() -> Vec<(&'static str, &'static str)> {
         TEXTS.into_iter().map(|(name, _, help)| (name, help)).collect()
     }
 
-    /// What the command line says.
+    /// The description given on the command line.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a text that is not of its form.
+    /// [`Error::Usage`] for a malformed text.
     pub fn matched(matches: &ArgMatches) -> Result<Self, Error> {
         let mut reading = Self::default();
         for name in Self::texts() {
@@ -78,10 +78,10 @@ impl Reading {
         Ok(reading)
     }
 
-    /// Says something; nothing by an empty text.
+    /// Sets an option; an empty text sets nothing.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a text that is not of its form, or an unknown name.
+    /// [`Error::Usage`] for a malformed text or an unknown name.
     pub fn say(&mut self, name: &str, text: &str) -> Result<(), Error> {
         let known = Self::texts().find(|known| *known == name);
         let name = known.ok_or_else(|| Error::Usage(format!("there is no option {name:?}")))?;
@@ -102,15 +102,15 @@ impl Reading {
         Ok(())
     }
 
-    /// For the importer.
+    /// The options for the importer.
     pub fn options(&self) -> &Options {
         &self.options
     }
 
-    /// For a reader of tables, which are recognised by their columns.
+    /// The options for a reader of tables, which are recognised by their columns.
     ///
     /// # Errors
-    /// [`Error::Usage`] if a format is said.
+    /// [`Error::Usage`] if a format is given.
     pub fn tables(&self) -> Result<&Options, Error> {
         match self.options.format {
             None => Ok(&self.options),
@@ -121,7 +121,7 @@ impl Reading {
         }
     }
 
-    /// The words of a command line that say the same.
+    /// The words of an equivalent command line.
     pub fn words(&self) -> Vec<String> {
         let texts = self.given.iter().flat_map(|(name, text)| [format!("--{name}"), text.clone()]);
         let strict = self.options.strict.then(|| format!("--{STRICT}"));

@@ -1,4 +1,4 @@
-//! Which files of which system some files are, by what is in them.
+//! Recognition of files by their contents: which files of which system they are.
 
 use std::path::{Path, PathBuf};
 
@@ -8,30 +8,30 @@ use super::settings::Settings;
 use crate::text::{file_name, listed, printable};
 use crate::{Error, table};
 
-/// So many files are named in a complaint.
+/// The maximum number of files named in an error message.
 const MOST_NAMED: usize = 3;
 
-/// Files of a recording, and what each was taken for.
+/// The files of a recording, and what each was recognised as.
 #[derive(Debug)]
 pub(crate) struct Recognised {
-    /// Whose recording it is.
+    /// The system whose recording it is.
     pub system: &'static dyn AnySystem,
-    /// What can be opened.
+    /// The files to open.
     pub files: Files,
-    /// Files, and the fields that they fill.
+    /// The recognised files, each with the field that it fills.
     pub taken: Vec<(PathBuf, &'static FileField)>,
-    /// Files that are not used: those of another recording, too.
+    /// The unused files, including those of another recording.
     pub left: Vec<PathBuf>,
-    /// Other systems whose recording it could be as well.
+    /// Other systems that could read the files as well.
     pub others: Vec<&'static str>,
 }
 
 impl Recognised {
-    /// Looks which system's recording files are. Where they could be of several it is that with the most files, among those
-    /// `preferred`, where nothing else decides.
+    /// Finds the system whose recording the files are. If there are several, it is the one with the most files, and the
+    /// `preferred` one if nothing else decides.
     ///
     /// # Errors
-    /// [`Error::Usage`] with the files that are missing, or if no system reads any.
+    /// [`Error::Usage`] that names the missing files, or if no system reads any file.
     pub(crate) fn of(
         systems: &[&'static dyn AnySystem],
         preferred: &str,
@@ -43,7 +43,7 @@ impl Recognised {
             systems.iter().map(|system| Self::of_system(*system, &candidates, files)).collect();
         let rank =
             |it: &Self| (it.missing().is_empty(), it.taken.len(), it.system.name() == preferred);
-        // The first of equals stays the first.
+        // The sort is stable: the first of equals stays first.
         found.sort_by_key(|it| std::cmp::Reverse(rank(it)));
         let mut found = found.into_iter().filter(|it| !it.taken.is_empty());
         let Some(mut best) = found.next() else {
@@ -68,7 +68,7 @@ impl Recognised {
         Ok(best)
     }
 
-    /// What of the files a system takes, the fields without which there is no recording first.
+    /// Assigns files to the fields of a system, the required fields first.
     fn of_system(system: &'static dyn AnySystem, paths: &[PathBuf], files: &Files) -> Self {
         let mut recognised = Self {
             system,
@@ -85,14 +85,14 @@ impl Recognised {
         recognised
     }
 
-    /// Fills a field with the file that fits it best, or with all that fit if there may be several.
+    /// Fills a field with the file that fits it best, or with all that fit if it allows several.
     fn fill(&mut self, field: &'static FileField) {
         let fits = |path: &PathBuf| {
             self.system.fits(field.name, path, &self.files)
                 && !self.is_another_recording(path, field)
         };
         let mut fitting: Vec<_> = self.left.iter().filter(|path| fits(path)).cloned().collect();
-        // Of files that are read alike the names tell which is which.
+        // Files that are read alike are told apart by their names.
         fitting.sort_by_key(|path| {
             let is_of_another =
                 self.system.files().iter().any(|it| it.name != field.name && says(path, it));
@@ -108,7 +108,7 @@ impl Recognised {
         }
     }
 
-    /// Whether a file could be the log itself, and is not called what else it could be.
+    /// Whether a file could be another main log, and is not named after `field`.
     fn is_another_recording(&self, path: &Path, field: &FileField) -> bool {
         let mut single = self.system.files().iter().filter(|it| it.required && !it.several);
         !field.required
@@ -116,9 +116,9 @@ impl Recognised {
             && single.any(|it| self.system.fits(it.name, path, &self.files))
     }
 
-    /// Whether its name begins as that of a file that was taken.
+    /// Whether the file name begins like that of a file already taken.
     fn is_beside(&self, path: &Path) -> bool {
-        // What is packed has two endings.
+        // A compressed file has two endings.
         let stem = |path: &Path| file_name(path).split('.').next().unwrap_or_default().to_owned();
         let own = stem(path);
         let begins = |of: &str| {
@@ -128,7 +128,7 @@ impl Recognised {
         self.taken.iter().any(|(path, _)| begins(&stem(path)))
     }
 
-    /// Fields without which there is no recording.
+    /// The required fields that are not filled.
     fn missing(&self) -> Vec<&'static str> {
         let fields = self.system.files().iter();
         let missing = fields.filter(|field| field.required && self.files.one(field.name).is_none());
@@ -136,12 +136,12 @@ impl Recognised {
     }
 }
 
-/// Whether it is a track that this program wrote: no sensor says that, and no truth is.
+/// Whether the file is a track written by this program: neither sensor logs nor truths have its `health` column.
 fn is_track(path: &Path) -> bool {
     table::has(path, ["health"])
 }
 
-/// Whether a file is called after a field.
+/// Whether the name of a file contains that of a field.
 fn says(path: &Path, field: &FileField) -> bool {
     path.file_stem().is_some_and(|stem| stem.to_string_lossy().to_lowercase().contains(field.name))
 }
@@ -150,7 +150,7 @@ fn name(path: &Path) -> String {
     printable(&file_name(path))
 }
 
-/// A complaint that no system reads any of these files; of a single one in the words of the preferred system's reader.
+/// The error that no system reads any of these files; for a single file it is that of the preferred system's reader.
 fn nothing_found(
     systems: &[&'static dyn AnySystem],
     preferred: &str,
@@ -181,7 +181,7 @@ mod tests {
     use super::*;
     use crate::systems::ALL;
 
-    /// Files of a recording that lie in a folder, with their fields; none if one of them is made of others.
+    /// The files of a recording in a folder, with their fields; `None` if one of them is made from others.
     fn files(recorded: &Recorded, folder: &Path) -> Option<BTreeMap<PathBuf, &'static str>> {
         let files = recorded.files.iter().map(|(field, file)| match file {
             DataFile::There(path) => Some((folder.join(path), *field)),
@@ -205,9 +205,9 @@ mod tests {
             file("run1.csv", ranges),
             file("run10-truth.csv", "t,x,y\n0,1,1\n9,1,1\n"),
             file("run1-truth.csv", "t,x,y\n0,2,2\n9,2,2\n"),
-            // What was made of it is nobody's truth and height.
+            // The track that was computed from the recording is neither its truth nor its height.
             file("track.csv", "t,x,y,z,sx,sy,sz,health\n0,1,1,1,0,0,0,good\n"),
-            // Of a tag that is put down.
+            // Reference points of a tag that is put down.
             file("points.csv", "point,x,y,z\nP,1,1,1\n"),
         ];
         let found = Recognised::of(&ALL, "", &paths, &Files::default()).expect("a recording");

@@ -1,114 +1,115 @@
-//! Recordings that stand for a system: where they lie below a folder of data, and which numbers are told of them.
+//! Reference recordings of a system: where they lie below a folder of data, and which numbers are reported for them.
 
 use std::path::Path;
 
 use crate::Error;
 
-/// Recordings of one kind, and the numbers that are told of them.
+/// Recordings of one kind, and the numbers reported for them.
 #[derive(Debug, Clone, Copy)]
 pub struct Study {
-    /// Names its table and figures: lower case, with hyphens.
+    /// The identifier of its table and figures: lower case, with hyphens.
     pub id: &'static str,
     /// What was recorded.
     pub title: &'static str,
-    /// Whose recordings they are, and what a reader should know of the numbers.
+    /// The origin of the recordings, and what a reader should know about the numbers.
     pub note: &'static str,
     /// The recordings, in the order in which they are shown.
     pub recordings: &'static [Recorded],
-    /// What is told of each, and of all together.
+    /// The numbers reported for each recording, and for all together.
     pub measures: &'static [Measure],
-    /// Names of the page's figures that are shown of each.
+    /// The names of the page's figures that are shown for each recording.
     pub figures: &'static [&'static str],
 }
 
 /// A recording as a command line would name it.
 #[derive(Debug, Clone, Copy)]
 pub struct Recorded {
-    /// What it is called, in a word or a few.
+    /// The name of the recording, in one or a few words.
     pub name: &'static str,
-    /// [`OURS`](Self::OURS) or [`THEIRS`](Self::THEIRS).
+    /// The method: [`OURS`](Self::OURS) or [`THEIRS`](Self::THEIRS).
     pub method: &'static str,
-    /// Fields and their files.
+    /// The fields of the recording with their files.
     pub files: &'static [(&'static str, DataFile)],
-    /// Settings as the command line says them.
+    /// The settings, as on the command line.
     pub settings: &'static [(&'static str, &'static str)],
 }
 
 /// A file of a recording.
 #[derive(Debug, Clone, Copy)]
 pub enum DataFile {
-    /// In the folder of data, below this path.
+    /// A file at this path below the folder of data.
     There(&'static str),
-    /// Made of what is there.
+    /// A file that is made from others.
     Made(Making),
 }
 
-/// How a file is made of files of the folder of data.
+/// How a file is made from files of the folder of data.
 #[derive(Debug, Clone, Copy)]
 pub struct Making {
-    /// Its name.
+    /// The name of the file.
     pub name: &'static str,
-    /// What it is made of: paths below the folder of data.
+    /// The paths below the folder of data that it is made from.
     pub of: &'static [&'static str],
-    /// How, in words or as a command.
+    /// How it is made, in words or as a command.
     pub how: &'static str,
-    /// Makes it of the files below the first path, at the second.
+    /// Makes the file from those below the first path, at the second path.
     pub make: fn(&Path, &Path) -> Result<(), Error>,
 }
 
 /// A number that a replay prints.
 #[derive(Debug, Clone, Copy)]
 pub struct Measure {
-    /// What is measured.
+    /// The quantity that is measured.
     pub quantity: &'static str,
-    /// Its unit; empty for a bare number.
+    /// The unit; empty for a dimensionless number.
     pub unit: &'static str,
-    /// Where it stands in what `replay --json` prints: a JSON pointer.
+    /// A JSON pointer to the number in the output of `replay --json`.
     pub at: &'static str,
-    /// How many units one of that is.
+    /// The factor from the printed number to this unit.
     pub scale: f64,
-    /// How several are put together, and what else is known of that; none: it is told of each recording alone.
+    /// How several recordings are combined, and reference values for the result; empty if the number is reported for
+    /// each recording alone.
     pub together: &'static [Together],
 }
 
-/// A number of several recordings.
+/// A number that combines several recordings.
 #[derive(Debug, Clone, Copy)]
 pub struct Together {
-    /// How they are put together.
+    /// The way in which they are combined.
     pub over: Over,
-    /// What a paper prints, or the best other program reaches on these recordings.
+    /// The number printed in a paper, or the best that another program reaches on these recordings.
     pub known: Option<f64>,
-    /// What nothing can be better than, or what was asked for.
+    /// The theoretical bound, or the requirement.
     pub limit: Option<f64>,
 }
 
-/// How the magnitudes of a number of several recordings are put together.
+/// How the magnitudes of a number of several recordings are combined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Over {
-    /// There is one recording.
+    /// A single recording.
     One,
-    /// Their mean.
+    /// The mean.
     Mean,
-    /// Their median.
+    /// The median.
     Median,
     /// The largest.
     Worst,
 }
 
 impl Study {
-    /// How many recordings by this library's method it has.
+    /// The number of recordings tracked by this library's method.
     pub fn count(&self) -> usize {
         self.recordings.iter().filter(|it| it.is_ours()).count()
     }
 }
 
 impl Recorded {
-    /// This library's own method.
+    /// The name of this library's own method.
     pub const OURS: &'static str = "default";
-    /// The paper's own method, as it is run here.
+    /// The name of the paper's own method, as run here.
     pub const THEIRS: &'static str = "published method";
 
-    /// A recording that is tracked by this library's method, with files of the folder of data and settings.
+    /// A recording to be tracked by this library's method, with files of the folder of data and settings.
     pub const fn new(
         name: &'static str,
         files: &'static [(&'static str, DataFile)],
@@ -117,7 +118,7 @@ impl Recorded {
         Self { name, method: Self::OURS, files, settings }
     }
 
-    /// By the paper's own method.
+    /// Marks the recording as tracked by the paper's own method.
     #[must_use]
     pub const fn published(mut self) -> Self {
         self.method = Self::THEIRS;
@@ -129,7 +130,7 @@ impl Recorded {
         self.method == Self::OURS
     }
 
-    /// Its name, and that of the method if that is not this library's.
+    /// The name, followed by the method if that is not this library's.
     pub fn title(&self) -> String {
         if self.is_ours() {
             self.name.to_owned()
@@ -138,7 +139,7 @@ impl Recorded {
         }
     }
 
-    /// Paths below the folder of data without which there is no such recording.
+    /// The paths below the folder of data that the recording requires.
     pub fn needs(&self) -> impl Iterator<Item = &'static str> {
         let paths = self.files.iter().flat_map(|(_, file)| match file {
             DataFile::There(path) => std::slice::from_ref(path),
@@ -147,7 +148,7 @@ impl Recorded {
         paths.copied()
     }
 
-    /// How its files are made that are made of others.
+    /// A description of how each file that is made from others is made.
     pub fn made(&self) -> impl Iterator<Item = String> {
         self.files.iter().filter_map(|(_, file)| match file {
             DataFile::Made(making) => Some(format!("{}: {}", making.name, making.how)),
@@ -157,19 +158,19 @@ impl Recorded {
 }
 
 impl Measure {
-    /// A number that is told of each recording.
+    /// A number reported for each recording, in the unit in which it is printed.
     pub const fn new(quantity: &'static str, unit: &'static str, at: &'static str) -> Self {
         Self { quantity, unit, at, scale: 1.0, together: &[] }
     }
 
-    /// What is printed is in a unit that is so many of this one's.
+    /// Sets the factor from the printed number to this unit.
     #[must_use]
     pub const fn times(mut self, scale: f64) -> Self {
         self.scale = scale;
         self
     }
 
-    /// Told of all recordings together, too.
+    /// Reports the number for all recordings together as well.
     #[must_use]
     pub const fn together(mut self, together: &'static [Together]) -> Self {
         self.together = together;
@@ -178,19 +179,19 @@ impl Measure {
 }
 
 impl Together {
-    /// Of which nothing else is known.
+    /// A combined number without reference values.
     pub const fn new(over: Over) -> Self {
         Self { over, known: None, limit: None }
     }
 
-    /// With what a paper prints, or the best other program reaches.
+    /// Sets the number printed in a paper, or the best that another program reaches.
     #[must_use]
     pub const fn known(mut self, known: f64) -> Self {
         self.known = Some(known);
         self
     }
 
-    /// With what nothing can be better than, or what was asked for.
+    /// Sets the theoretical bound, or the requirement.
     #[must_use]
     pub const fn limit(mut self, limit: f64) -> Self {
         self.limit = Some(limit);
@@ -199,7 +200,7 @@ impl Together {
 }
 
 impl Over {
-    /// What a quantity is called when so many are put together.
+    /// The name of a quantity combined over `count` recordings.
     pub fn of(self, quantity: &str, count: usize) -> String {
         match self {
             Self::One => quantity.to_owned(),

@@ -19,10 +19,10 @@ pub struct RunOptions {
     pub scalar: Option<ScalarKind>,
 }
 
-/// The number type to compute in: the one asked for, or else the `default`.
+/// The number type to compute in: the requested one, or else the `default`.
 ///
 /// # Errors
-/// [`Error::Usage`] if the system does not support what was asked for.
+/// [`Error::Usage`] if the system does not support the requested type.
 pub fn choose_scalar(
     system: &str,
     asked: Option<ScalarKind>,

@@ -1,40 +1,41 @@
-//! A setting is said once: the option of the command line, the page's control and both their help come from it.
+//! Settings, each declared once: the command line's option, the page's control and the help of both are derived from
+//! it.
 
 use clap::ValueEnum;
 
 use super::kind::{Kind, Named, Number, Value, name_among};
 
-/// Something that a person can set.
+/// A value that the user can set.
 #[derive(Debug, Clone)]
 pub struct Setting {
-    /// Its name everywhere: `contact-height` is `--contact-height`.
+    /// The name used everywhere: `contact-height` is `--contact-height`.
     pub name: &'static str,
-    /// What it is: a noun phrase.
+    /// The description: a noun phrase.
     pub help: &'static str,
-    /// What values it has.
+    /// The kind of values that it takes.
     pub kind: Kind,
-    /// Whether it acts on a stream that is followed while it comes.
+    /// Whether the setting also applies to live streams.
     pub in_live: bool,
-    /// Whether it chooses what is shown of a track, and the track itself is the same.
+    /// Whether the setting only selects what is shown of a track and leaves the track itself unchanged.
     pub is_view: bool,
     /// An earlier name of the option.
     pub alias: Option<&'static str>,
-    /// Options without a value that stand for a choice: the option's name and the choice's.
+    /// Options without a value that stand for a choice: the name of the option and that of the choice.
     pub flags: &'static [(&'static str, &'static str)],
-    /// Another spelling of values on the command line.
+    /// An alternative notation for values on the command line.
     pub shorthand: Option<Shorthand>,
 }
 
-/// Another spelling of values on the command line.
+/// An alternative notation for values on the command line.
 #[derive(Debug, Clone, Copy)]
 pub struct Shorthand {
-    /// What it looks like: `NAME[:THRESHOLD]`.
+    /// The form of the notation: `NAME[:THRESHOLD]`.
     pub form: &'static str,
-    /// The values of one or more settings that a text stands for; none if it is no such text.
+    /// Parses the values of one or more settings from a text; `None` if the text is not in this notation.
     pub read: fn(&str) -> Option<Result<Given, String>>,
 }
 
-/// Settings by name with their values.
+/// Values by the names of their settings.
 pub type Given = Vec<(&'static str, Value)>;
 
 impl Setting {
@@ -43,7 +44,7 @@ impl Setting {
         Self { name, help, kind, in_live, is_view, alias: None, flags: &[], shorthand: None }
     }
 
-    /// A number from the least to the greatest in equally long steps: `[min, max, step]`.
+    /// A number within bounds, with a slider in equal steps: `[min, max, step]`.
     pub const fn number(
         name: &'static str,
         help: &'static str,
@@ -57,7 +58,7 @@ impl Setting {
         Self::new(name, help, Kind::Number(number))
     }
 
-    /// A number whose decades are equally long on a slider, 40 steps each.
+    /// A number with a logarithmic slider of 40 steps per decade.
     pub const fn decades(
         name: &'static str,
         help: &'static str,
@@ -72,7 +73,7 @@ impl Setting {
         setting
     }
 
-    /// One of a few, each with its name and what people call it; the first is the default.
+    /// One of several named values, each with its name and description; the first is the default.
     pub fn choice(
         name: &'static str,
         help: &'static str,
@@ -83,7 +84,7 @@ impl Setting {
         Self::new(name, help, Kind::Choice { of, default })
     }
 
-    /// One of the variants of an enum, with the names and the help of its command line.
+    /// One of the variants of an enum, with its names and help of the command line.
     pub fn one_of<T: ValueEnum>(name: &'static str, help: &'static str, default: &T) -> Self {
         Self::some_of(name, help, T::value_variants(), default)
     }
@@ -100,7 +101,7 @@ impl Setting {
         Self::new(name, help, Kind::Choice { of, default })
     }
 
-    /// Any of the variants of an enum.
+    /// Any subset of the variants of an enum.
     pub fn any_of<T: ValueEnum>(name: &'static str, help: &'static str) -> Self {
         let of = T::value_variants().iter().filter_map(Named::of).collect();
         Self::new(name, help, Kind::Set { of })
@@ -121,7 +122,7 @@ impl Setting {
         Self::new(name, help, Kind::Text { form, check })
     }
 
-    /// Without a default: what it is when nothing is given, others decide; a slider stands there at first.
+    /// Removes the default: a value that is not given is decided elsewhere, and only the slider starts there.
     #[must_use]
     pub const fn undecided(mut self) -> Self {
         if let Kind::Number(number) = &mut self.kind {
@@ -130,7 +131,7 @@ impl Setting {
         self
     }
 
-    /// A time or step that can be played, and chooses what is shown of a track.
+    /// Marks a time or step that can be played, which only selects what is shown of a track.
     #[must_use]
     pub const fn playable(mut self) -> Self {
         if let Kind::Number(number) = &mut self.kind {
@@ -139,45 +140,45 @@ impl Setting {
         self
     }
 
-    /// Chooses what is shown of a track, and the track itself is the same.
+    /// Marks a setting that only selects what is shown of a track and leaves the track itself unchanged.
     #[must_use]
     pub const fn view(mut self) -> Self {
         self.is_view = true;
         self
     }
 
-    /// Acts on a stream that is followed while it comes, too.
+    /// Makes the setting available for live streams as well.
     #[must_use]
     pub const fn live(mut self) -> Self {
         self.in_live = true;
         self
     }
 
-    /// With an earlier name of the option.
+    /// Adds an earlier name of the option.
     #[must_use]
     pub const fn alias(mut self, alias: &'static str) -> Self {
         self.alias = Some(alias);
         self
     }
 
-    /// With options without a value that stand for a choice.
+    /// Adds options without a value that stand for a choice.
     #[must_use]
     pub const fn flags(mut self, flags: &'static [(&'static str, &'static str)]) -> Self {
         self.flags = flags;
         self
     }
 
-    /// With another spelling of values on the command line.
+    /// Adds an alternative notation for values on the command line.
     #[must_use]
     pub const fn shorthand(mut self, shorthand: Shorthand) -> Self {
         self.shorthand = Some(shorthand);
         self
     }
 
-    /// The values that a text of the command line stands for, of this setting and perhaps others.
+    /// Parses a text of the command line into values of this setting and possibly others.
     ///
     /// # Errors
-    /// What was expected.
+    /// A sentence that says what was expected.
     pub fn read(&self, text: &str) -> Result<Given, String> {
         if let Some(given) = self.shorthand.and_then(|shorthand| (shorthand.read)(text)) {
             return given;
@@ -197,7 +198,7 @@ impl Setting {
         Ok(vec![(self.name, value)])
     }
 
-    /// Whether a value is one that this can have.
+    /// Whether the setting accepts a value.
     pub fn takes(&self, value: &Value) -> bool {
         match (&self.kind, value) {
             (Kind::Number(number), Value::Number(value)) => number.takes(*value),
@@ -211,7 +212,7 @@ impl Setting {
         }
     }
 
-    /// The value if none is given; none if others decide.
+    /// The default value; `None` if the value is decided elsewhere.
     pub fn default(&self) -> Option<Value> {
         match &self.kind {
             Kind::Number(number) => number.default.map(Value::Number),

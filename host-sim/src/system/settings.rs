@@ -1,4 +1,4 @@
-//! What is set: the values that were given, held against the table of what there is.
+//! The settings in effect: the given values, checked against the table of available settings.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use super::kind::{Kind, Value};
 use super::setting::{Given, Setting};
 use crate::Error;
 
-/// The table of settings of a system, and what of it was given.
+/// The table of a system's settings, and the values that were given.
 #[derive(Debug, Clone)]
 pub struct Settings {
     table: Arc<[Setting]>,
@@ -18,22 +18,22 @@ pub struct Settings {
 }
 
 impl PartialEq for Settings {
-    /// Whether the same is given.
+    /// Whether the same values are given.
     fn eq(&self, other: &Self) -> bool {
         self.given == other.given
     }
 }
 
 impl Settings {
-    /// Nothing given: every setting at its default.
+    /// Settings with no value given: all at their defaults.
     pub fn new(table: impl Into<Arc<[Setting]>>) -> Self {
         Self { table: table.into(), given: BTreeMap::new() }
     }
 
-    /// What a page `sent`, the rest at its default.
+    /// The settings that a page has `sent`, the rest at their defaults.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a name that no setting has, and a value that it cannot have.
+    /// [`Error::Usage`] for an unknown name or a value that the setting does not accept.
     pub fn sent(
         table: impl Into<Arc<[Setting]>>,
         sent: &serde_json::Map<String, serde_json::Value>,
@@ -53,7 +53,7 @@ impl Settings {
         Ok(settings)
     }
 
-    /// What the command line gives; arguments that it does not know are left out.
+    /// The settings given on the command line; unknown arguments are ignored.
     pub fn matched(table: impl Into<Arc<[Setting]>>, matches: &ArgMatches) -> Self {
         let mut settings = Self::new(table);
         let table = Arc::clone(&settings.table);
@@ -78,7 +78,7 @@ impl Settings {
         settings
     }
 
-    /// Gives values; those of sets are added to what is there.
+    /// Sets values; members of sets are added to those already there.
     pub fn give(&mut self, given: Given) {
         for (name, value) in given {
             match (self.given.get_mut(name), value) {
@@ -94,10 +94,10 @@ impl Settings {
         }
     }
 
-    /// Gives the value that a text of the command line stands for.
+    /// Sets the value that a text of the command line stands for.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a name that no setting has, and a text that is no value of it.
+    /// [`Error::Usage`] for an unknown name or a malformed text.
     pub fn set(&mut self, name: &str, text: &str) -> Result<(), Error> {
         let setting = self.table.iter().find(|setting| setting.name == name);
         let setting =
@@ -107,13 +107,13 @@ impl Settings {
         Ok(())
     }
 
-    /// Without those that choose what is shown of a track.
+    /// The settings without those that only select what is shown of a track.
     #[must_use]
     pub fn without_views(&self) -> Self {
         self.without(|name| self.table.iter().any(|s| s.name == name && s.is_view))
     }
 
-    /// Without those that are so.
+    /// The settings without the given values whose names satisfy `is_so`.
     #[must_use]
     pub fn without(&self, is_so: impl Fn(&str) -> bool) -> Self {
         let mut settings = self.clone();
@@ -121,30 +121,30 @@ impl Settings {
         settings
     }
 
-    /// With one more that can be set.
+    /// Adds an available setting.
     #[must_use]
     pub fn and(mut self, setting: Setting) -> Self {
         self.table = self.table.iter().cloned().chain([setting]).collect();
         self
     }
 
-    /// The table.
+    /// The table of available settings.
     pub fn table(&self) -> &[Setting] {
         &self.table
     }
 
-    /// Names of what is given, in the order of the table.
+    /// The names of the given settings, in the order of the table.
     pub fn given(&self) -> impl Iterator<Item = &'static str> {
         let names = self.table.iter().map(|setting| setting.name);
         names.filter(|name| self.given.contains_key(name))
     }
 
-    /// What is given, by name, as [`Self::sent`] takes it.
+    /// The given values by name, as [`Self::sent`] accepts them.
     pub fn to_json(&self) -> serde_json::Value {
         serde_json::to_value(&self.given).unwrap_or_default()
     }
 
-    /// Whether it is given.
+    /// Whether a value is given for this setting.
     pub fn is_given(&self, name: &str) -> bool {
         self.given.contains_key(name)
     }
@@ -154,7 +154,7 @@ impl Settings {
         self.given.get(name).cloned().or_else(default)
     }
 
-    /// A number; none if it is not given and others decide.
+    /// The value of a number setting; `None` if it is not given and decided elsewhere.
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.value(name) {
             Some(Value::Number(number)) => Some(number),
@@ -162,28 +162,28 @@ impl Settings {
         }
     }
 
-    /// A number with a default.
+    /// The value of a number setting that has a default.
     pub fn decided(&self, name: &str) -> f64 {
         self.number(name).unwrap_or_default()
     }
 
-    /// The name that is chosen; empty if there is no such choice.
+    /// The name of the chosen value; empty if there is no such setting.
     pub fn choice(&self, name: &str) -> String {
         self.text(name).unwrap_or_default()
     }
 
-    /// The chosen variant of an enum; the default's own if there is no such choice.
+    /// The chosen variant of an enum; the enum's default if there is no such setting.
     pub fn chosen<T: ValueEnum + Default>(&self, name: &str) -> T {
         T::from_str(&self.choice(name), false).unwrap_or_default()
     }
 
-    /// The variants of a set that are given.
+    /// The given variants of a set.
     pub fn all_of<T: ValueEnum>(&self, name: &str) -> Vec<T> {
         let Some(Value::Set(names)) = self.value(name) else { return Vec::new() };
         names.iter().filter_map(|name| T::from_str(name, false).ok()).collect()
     }
 
-    /// A text, if one is given.
+    /// The value of a text or choice, if there is one.
     pub fn text(&self, name: &str) -> Option<String> {
         match self.value(name) {
             Some(Value::Text(text)) => Some(text),
@@ -191,12 +191,12 @@ impl Settings {
         }
     }
 
-    /// Whether a switch is on; off if there is none of that name.
+    /// Whether a switch is on; false if there is none of that name.
     pub fn is_on(&self, name: &str) -> bool {
         self.value(name) == Some(Value::Switch(true))
     }
 
-    /// Options of the command line that give the same: what differs from the default.
+    /// The options of an equivalent command line: the values that differ from the defaults.
     pub fn arguments(&self) -> Vec<String> {
         let differing = self.table.iter().filter_map(|setting| {
             let value = self.given.get(setting.name)?;

@@ -2,20 +2,20 @@
 
 use serde_json::{Value, json};
 
-/// A table beside the figures of a page.
+/// A table shown beside the figures of a page.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sheet {
-    /// Names its place on the page: lower case, with hyphens.
+    /// The identifier on the page: lower case, with hyphens.
     pub id: &'static str,
-    /// What it lists, in a few words.
+    /// The title: what the table lists, in a few words.
     pub title: String,
-    /// What to see in it.
+    /// The caption: what to see in the table.
     pub caption: String,
-    /// A quantity and its unit a column.
+    /// The heading of each column: a quantity and its unit.
     pub header: Vec<String>,
-    /// As many cells a row, as they are read.
+    /// The rows, with a formatted cell per column.
     pub rows: Vec<Vec<String>>,
-    /// When each row was, s of the clock of the page's figures, ascending; the row at the page's cursor is marked.
+    /// The time of each row in seconds of the figures' clock, ascending; the row at the page's cursor is marked.
     pub times_s: Option<Vec<f64>>,
 }
 
@@ -27,22 +27,22 @@ impl Sheet {
         Self { id, title, caption, header, rows, times_s: None }
     }
 
-    /// With a sentence on what to see.
+    /// Sets the caption, a sentence on what to see.
     pub fn caption(self, caption: impl Into<String>) -> Self {
         Self { caption: caption.into(), ..self }
     }
 
-    /// With these rows.
+    /// Sets the rows.
     pub fn with(self, rows: impl IntoIterator<Item = Vec<String>>) -> Self {
         Self { rows: rows.into_iter().collect(), ..self }
     }
 
-    /// With the time of each row, s, ascending.
+    /// Sets the time of each row, in seconds, ascending.
     pub fn timed(self, times_s: impl IntoIterator<Item = f64>) -> Self {
         Self { times_s: Some(times_s.into_iter().collect()), ..self }
     }
 
-    /// The rows of a stretch of time, s, or of all of it: no more than so many, the first ones.
+    /// The first rows, at most `most`, of a time window in seconds, or of all time.
     pub fn excerpt(&self, window_s: Option<[f64; 2]>, most: usize) -> Excerpt<'_> {
         let times = self.times_s.as_deref();
         let [from, to] = match (times, window_s) {
@@ -65,26 +65,26 @@ impl Sheet {
     }
 }
 
-/// Rows of a [`Sheet`] that are shown.
+/// The rows of a [`Sheet`] that are shown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Excerpt<'a> {
     sheet: &'a Sheet,
-    /// The rows.
+    /// The rows of the excerpt.
     pub rows: &'a [Vec<String>],
-    /// When they were, s; none if that is not known.
+    /// The times of the rows in seconds; `None` if they are not known.
     pub times_s: Option<&'a [f64]>,
-    /// That there are more, if there are.
+    /// A sentence that says that there are more rows, if there are.
     said: Option<String>,
 }
 
 impl Excerpt<'_> {
-    /// What to see, and how many rows there are if not all are shown.
+    /// The caption of the sheet, and the number of rows if not all are shown.
     pub fn caption(&self) -> String {
         let caption = [Some(self.sheet.caption.as_str()), self.said.as_deref()];
         caption.into_iter().flatten().filter(|it| !it.is_empty()).collect::<Vec<_>>().join(" ")
     }
 
-    /// As the page takes it.
+    /// The excerpt in the form that the page reads.
     pub fn to_json(&self) -> Value {
         let Sheet { id, title, header, .. } = self.sheet;
         json!({

@@ -1,4 +1,4 @@
-//! A setting as the command line and the page show it.
+//! The presentation of a setting on the command line and the page.
 
 use clap::builder::{PossibleValuesParser, StringValueParser, TypedValueParser};
 use clap::{Arg, ArgAction};
@@ -16,7 +16,7 @@ impl Setting {
         }
     }
 
-    /// Options of the command line.
+    /// The options of the command line.
     pub fn arguments(&self) -> Vec<Arg> {
         let flag = |&(name, choice): &(&'static str, &'static str)| {
             let help = format!("As --{} {choice}", self.name);
@@ -52,7 +52,7 @@ impl Setting {
         }
     }
 
-    /// The page's control.
+    /// The page's control, as JSON.
     pub fn control(&self) -> serde_json::Value {
         let mut control = Map::new();
         control.insert("name".to_owned(), json!(self.name));
@@ -91,7 +91,7 @@ impl Setting {
         }
     }
 
-    /// What values look like on the command line: `METRES`, `X,Y,Z`, `P1|P2`.
+    /// The form of values on the command line: `METRES`, `X,Y,Z`, `P1|P2`.
     pub fn form(&self) -> String {
         let unit = match &self.kind {
             Kind::Number(number) => number.unit,

@@ -1,4 +1,4 @@
-//! The systems, one folder each, with the same rooms.
+//! The systems, each in a folder of its own with the same structure.
 
 pub mod drone;
 pub mod gnss;
@@ -8,6 +8,6 @@ pub mod uav;
 
 use crate::system::AnySystem;
 
-/// Every system, in the order in which they run: the one list.
+/// Every system, in the order in which they run. This is the only list of them.
 pub static ALL: [&dyn AnySystem; 5] =
     [&pedestrian::Pedestrian, &robot::Robot, &drone::Drone, &uav::Uav, &gnss::Gnss];

@@ -1,5 +1,5 @@
-//! `host-sim calibrate pedestrian` from outside: a sensor that is known to be wrong, held in twelve positions, is found out,
-//! and a walk with it comes out right.
+//! Tests of `host-sim calibrate pedestrian`: the errors of a sensor held in twelve positions are found, and correcting
+//! them makes a walk come out right.
 
 use std::f64::consts::PI;
 use std::fmt::Write;
@@ -19,14 +19,14 @@ use crate::program::{Desk, host_sim, json, refusal, rows_of, text};
 use crate::sender;
 
 const RATE_HZ: f64 = 100.0;
-/// How long a position is held, and how long it takes to turn to the next, s.
+/// The time for which a position is held (s).
 const HOLD_S: f64 = 2.5;
 const TURN_S: f64 = 1.5;
-/// Noise of a sample: m/s² and rad/s.
+/// The noise of a sample: m/s² and rad/s.
 const NOISE: [f64; 2] = [0.02, 0.002];
 
-/// What corrects the wrong sensor: matrix and offset of accelerometer and gyroscope. Scales wrong by 2 %, offsets by
-/// 0.3 m/s², biases of 1 °/s.
+/// The true correction of the sensor: matrix and offset of accelerometer and gyroscope. The scales are wrong by 2 %,
+/// the offsets 0.3 m/s², the biases 1 °/s.
 fn truth() -> [(Matrix3<f64>, Vector3<f64>); 2] {
     let degree = PI / 180.0;
     [
@@ -57,7 +57,7 @@ const UPS: [[f64; 3]; 12] = [
     [-1.0, 0.0, -1.0],
 ];
 
-/// What a perfect IMU measures that is held with these axes up, one after the other.
+/// The samples of a perfect IMU held with these axes up, one after the other.
 fn positions(ups: &[[f64; 3]]) -> Vec<Sample> {
     let attitudes: Vec<_> = ups
         .iter()
@@ -73,14 +73,14 @@ fn positions(ups: &[[f64; 3]]) -> Vec<Sample> {
         let share = ((t - index as f64 * period - HOLD_S) / TURN_S).clamp(0.0, 1.0);
         let smooth = share * share * share * (10.0 - share * (15.0 - 6.0 * share));
         let turn = from.rotation_to(&to).powf(smooth);
-        // A hand carries it about, too.
+        // A hand also moves the sensor.
         let lifted = Vector3::new(0.1, -0.05, 0.2) * (PI * smooth).sin().powi(2);
         Pose { position: lifted, attitude: turn * from }
     };
     ideal_imu(pose, ups.len() as f64 * period - TURN_S, RATE_HZ)
 }
 
-/// The samples as this sensor shows them, in a log; none is a perfect sensor with the same noise.
+/// A log of the samples with the errors of a sensor and noise; `None` is a perfect sensor with the same noise.
 fn log(samples: &[Sample], sensor: Option<[(Matrix3<f64>, Vector3<f64>); 2]>) -> String {
     let mut rng = stream(11, 0);
     let mut text = "t,ax,ay,az,gx,gy,gz\n".to_owned();
@@ -106,7 +106,7 @@ fn calibrate<'a>(log: &'a str, out: &'a str) -> [&'a str; 6] {
     ["calibrate", "pedestrian", "--log", log, "--out", out]
 }
 
-/// The parameters that were found, with value and σ.
+/// The parameters found, each with value and σ.
 fn parameters(report: &Value) -> Vec<(String, f64, Option<f64>)> {
     let all = report["parameters"].as_array().expect("parameters");
     all.iter()
@@ -117,7 +117,7 @@ fn parameters(report: &Value) -> Vec<(String, f64, Option<f64>)> {
         .collect()
 }
 
-/// The same of the truth, in the same order.
+/// The true parameters, in the order of a report's.
 fn true_parameters() -> Vec<f64> {
     let of = |(matrix, offset): (Matrix3<f64>, Vector3<f64>)| {
         let by_row = matrix.transpose();
@@ -126,7 +126,7 @@ fn true_parameters() -> Vec<f64> {
     truth().into_iter().flat_map(of).collect()
 }
 
-/// The largest σ of parameters whose names begin so.
+/// The largest σ of the parameters whose names begin with `begin`.
 fn largest(report: &Value, begin: &str) -> f64 {
     let found = parameters(report);
     let of = found.iter().filter(|(name, ..)| name.starts_with(begin));
@@ -196,7 +196,7 @@ fn twelve_positions_tell_what_is_wrong_and_a_walk_comes_out_right() {
         text(&table.stdout)
     );
 
-    // The same walk with a perfect sensor, with the wrong one, and with that calibrated.
+    // The same walk with a perfect sensor, with the wrong one, and with the wrong one calibrated.
     let walk = Scenario::draw_rounds(&mut stream(4, 0), 3).ideal_imu(RATE_HZ);
     let plain = desk.file("plain.csv", log(&walk, None));
     let wrong = desk.file("wrong.csv", log(&walk, Some(truth())));
@@ -220,7 +220,7 @@ fn twelve_positions_tell_what_is_wrong_and_a_walk_comes_out_right() {
     let with = apart(&track(&wrong, &["--calibration", &out]));
     println!("off the walk of a perfect sensor: {without:.3} m, calibrated {with:.3} m");
     assert!(with < 0.25 * without, "{with} m, without {without} m");
-    // Neither what is checked nor what firmware is told loses by it.
+    // The check and the firmware configuration work with a calibration as well.
     let check =
         json(&host_sim(&["check", "pedestrian", "--json", "--log", &wrong, "--calibration", &out]));
     assert_eq!(check["system"], "pedestrian");
@@ -301,7 +301,7 @@ fn what_does_not_tell_is_refused_with_what_to_do() {
     assert!(refusal(&replay).contains("expected a parameter acc_offset_x, found none"));
 }
 
-/// Samples as a sender sends them.
+/// The samples as frames of a sender.
 fn frames_of(samples: &[Sample]) -> Vec<u8> {
     sender::frames(samples.iter().map(|sample| Imu {
         time_us: sample.time_us,
@@ -310,7 +310,7 @@ fn frames_of(samples: &[Sample]) -> Vec<u8> {
     }))
 }
 
-/// What a log holds as samples.
+/// The samples in a log.
 fn samples_of(log: &str) -> Vec<Sample> {
     let row = |line: &str| {
         let values: Vec<f64> = line.split(',').map(|it| it.parse().expect("a number")).collect();
@@ -342,11 +342,11 @@ fn a_stream_of_positions_gives_the_calibration_of_its_log() {
         let value = |line: &str| line.split(',').nth(1).and_then(|it| it.parse().ok());
         text.lines().skip(1).map(|line| value(line).expect("a value")).collect()
     };
-    // Four bytes hold what the log says to a ten-thousandth of what the sensor's noise leaves.
+    // Single precision represents the log to a ten-thousandth of the effect of the sensor's noise.
     for (of_stream, of_log) in values(&out).iter().zip(values(&of_log)) {
         assert!((of_stream - of_log).abs() < 1e-5, "{of_stream} is not {of_log}");
     }
-    // Half of them are too few: what is missing is said, and nothing written.
+    // Half of the positions are too few: the missing ones are named, and nothing is written.
     let half = desk.file("half.frames", frames_of(&samples[..samples.len() / 4]));
     let missing = desk.named("missing.csv");
     let watch = ["live", "--system", "pedestrian", "--headless", "--calibrate", &missing];

@@ -1,4 +1,4 @@
-//! `host-sim check` from outside: clean logs have no fault, and each fault that is put in is told with what to do.
+//! Tests of `host-sim check`: clean logs have no fault, and each injected fault is reported with a remedy.
 
 use std::fs;
 
@@ -59,11 +59,11 @@ fn the_faults_of_a_walk_are_told_with_what_to_do() {
     let mut slow = clean.clone();
     slow.retain(|sample| sample.time_us / 10_000 % 5 == 0);
     assert!(told("slow.txt", &slow)[0].contains("20.0 Hz"));
-    // A warning of the replay, too.
+    // The replay warns as well.
     let log = desk.named("stuck.txt");
     let replay = parsed(&host_sim(&["replay", "pedestrian", "--json", "--log", &log]));
     assert!(replay["warnings"].to_string().contains("repeated itself"), "{replay}");
-    // The foot was in a swing: what it turned meanwhile is lost, too.
+    // The foot was in a swing: its rotation in the meantime is lost as well.
     assert_eq!(replay["health"]["state"], "bad");
     assert_eq!(replay["health"]["reasons"][0], "stuck");
     let table = host_sim(&["check", "pedestrian", "--log", &desk.named("clean.txt")]);
@@ -95,7 +95,7 @@ fn the_faults_of_ranges_are_told_with_what_to_do() {
     let cut = Room::new([0.0; 4], |_, t, anchor, range| vec![line(t, anchor, range.min(5.0))]);
     let sentences = told(&cut.anchors, &cut.log);
     assert!(sentences.iter().any(|it| it.contains("exactly 5 m")), "{sentences:?}");
-    // A warning of the replay, too.
+    // The replay warns as well.
     let files = ["replay", "robot", "--json", "--anchors", &swapped, "--log", &room.log];
     let replay = parsed(&host_sim(&[&files[..], &height].concat()));
     assert!(replay["warnings"].to_string().contains("swapped"), "{replay}");

@@ -1,4 +1,4 @@
-//! The program from outside: exit status, standard output, standard error, files.
+//! Tests of the program: exit status, standard output, standard error, files.
 
 use std::fs;
 use std::path::Path;
@@ -116,7 +116,7 @@ fn broken_logs_are_refused_with_file_and_line() {
     assert!(refusal(&["replay", "pedestrian", "--log", &bytes]).contains("bytes.csv: expected"));
 }
 
-/// The power switch cuts a last line, and a wire loses a bit: the rest of the walk is there.
+/// A last line cut by the power switch, and a bit lost on a wire: the rest of the walk is read.
 #[test]
 fn damaged_lines_are_skipped_and_told() {
     let desk = Desk::new();
@@ -138,7 +138,7 @@ fn damaged_lines_are_skipped_and_told() {
     assert!((length(&found) / length(&whole) - 1.0).abs() < 0.005, "{found} {whole}");
 }
 
-/// What a person reads at a glance the program does, and says how.
+/// Units and columns that a person recognises at a glance are inferred, and the conclusions are reported.
 #[test]
 fn units_and_columns_are_found_or_said() {
     let desk = Desk::new();

@@ -1,13 +1,14 @@
-//! What a shell offers below a command: each shell reads the script that `completions` prints, and is asked.
+//! Tests of shell completion below a command: each shell reads the script that `completions` prints, and is asked for
+//! completions.
 //!
-//! Where a shell is missing its test says SKIPPED, unless `KESTIRIM_REQUIRE_SHELLS` is set.
+//! If a shell is missing its test reports SKIPPED, unless `KESTIRIM_REQUIRE_SHELLS` is set.
 
 use std::fs;
 use std::process::Command;
 
 use crate::program::{Desk, host_sim, is_missing, refusal, text};
 
-/// Prints what bash offers for the last of the words.
+/// A script that prints bash's completions of the last word.
 const BASH: &str = r#"
 source "$1"; shift
 COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
@@ -16,7 +17,7 @@ function=$(complete -p host-sim | sed 's/.* -F \([^ ]*\).*/\1/')
 printf '%s\n' "${COMPREPLY[@]}"
 "#;
 
-/// Types the words into an interactive shell, and prints the screen up to the option that is expected.
+/// A script that types the words into an interactive shell, and prints the screen up to the expected option.
 const ZSH: &str = r#"
 zmodload zsh/zpty
 script=$1 expected=$2; shift 2
@@ -31,7 +32,7 @@ zpty -d shell
 
 const FISH: &str = "source $argv[1]; complete -C \"$argv[2..-1]\"";
 
-/// Lines that a test types, and what is to be offered.
+/// Lines to complete, each with an expected completion.
 const LINES: [(&[&str], &str); 4] = [
     (&["host-sim", "replay", "robot", "--"], "--anchors"),
     (&["host-sim", "run", "drone", "--"], "--trials"),
@@ -39,12 +40,12 @@ const LINES: [(&[&str], &str); 4] = [
     (&["host-sim", "live", "--"], "--system"),
 ];
 
-/// Whether the shell is there.
+/// Whether the shell is installed.
 fn has(shell: &str) -> bool {
     !is_missing(shell, "KESTIRIM_REQUIRE_SHELLS")
 }
 
-/// A file with the script for a shell.
+/// Writes the completion script for a shell and returns its path.
 fn script(desk: &Desk, shell: &str) -> String {
     let output = host_sim(&["completions", shell]);
     assert_eq!(output.status.code(), Some(0));
@@ -53,7 +54,8 @@ fn script(desk: &Desk, shell: &str) -> String {
     path
 }
 
-/// What a shell prints of each line: `arguments` come before its words, from the script and what is to be offered.
+/// Asserts the completions of each line in a shell: `arguments` precede its words, and depend on the script and the
+/// expected completion.
 fn assert_offered(
     shell: &str,
     arguments: impl for<'a> Fn(&'a str, &'a str) -> Vec<&'a str>,
@@ -65,7 +67,7 @@ fn assert_offered(
     let desk = Desk::new();
     let script = script(&desk, shell);
     for (words, expected) in LINES {
-        // A shell that waits for what never comes is ended.
+        // The timeout ends a shell that waits for ever.
         let mut command = Command::new("timeout");
         command.args(["60", shell]).args(arguments(&script, expected)).args(words);
         let output = command.output().expect(shell);

@@ -1,4 +1,4 @@
-//! `host-sim design` from outside: exit status, standard output, standard error, files.
+//! Tests of `host-sim design`: exit status, standard output, standard error, files.
 
 use std::fs;
 use std::process::Command;
@@ -6,7 +6,7 @@ use std::process::Command;
 use crate::program::{Desk, host_sim, json, refusal, text};
 use serde_json::{Value, json as value};
 
-/// One case that can be answered of each kind, and one that cannot.
+/// One solvable case of each kind, and one unsolvable.
 fn cases() -> Value {
     let (a, c) = (value!([[1.0, 0.1], [0.0, 1.0]]), value!([[1.0, 0.0]]));
     let poles = value!([[0.5, 0.0], [0.25, 0.0]]);
@@ -51,7 +51,7 @@ fn cases() -> Value {
     })
 }
 
-/// Of nobody.
+/// The coefficients of an imaginary glider.
 fn glider() -> Value {
     value!({
         "mass": 5.0, "Jx": 0.5, "Jy": 0.3, "Jz": 0.7, "S_wing": 0.8, "b": 3, "c": 0.27, "S_prop": 0.1, "k_motor": 50,

@@ -1,4 +1,4 @@
-//! The drone from outside: exit status, standard output, standard error, files.
+//! Tests of the drone's commands: exit status, standard output, standard error, files.
 
 use std::fs;
 use std::process::Command;
@@ -7,11 +7,11 @@ use serde_json::json as value;
 
 use crate::program::{Desk, host_sim, json, messages, refusal, text};
 
-/// Losses over open ground round a user at (120, −40), of an unknown level.
+/// Path losses over open ground around a user at (120, −40), with an unknown level.
 fn flight() -> String {
     let row = |k: u32| {
         let angle = f64::from(k) * 0.7;
-        // No circle: from there a place and its inversion look alike.
+        // Not a circle: from there a position and its inversion look alike.
         let radius = 50.0 + 7.0 * f64::from(k);
         let (x, y) = (radius * angle.cos(), radius * angle.sin());
         let level = -20.0 - 20.0 * (x - 120.0).hypot(y + 40.0).hypot(40.0).log10();
@@ -46,7 +46,7 @@ fn a_cell_is_one_row() {
         assert_eq!(row["limit_m"].is_number(), !moving);
         assert_eq!(row["lost_percent"].is_number(), moving);
     }
-    // The printed formulas and constants: 337.6 kJ for the circle of four.
+    // By the printed formulas and constants: 337.6 kJ for the circle of four.
     let row = cell(&["--measurements", "4"]);
     assert!((row["energy_j"].as_f64().expect("energy") - 337_600.0).abs() < 100.0);
 }
@@ -77,7 +77,7 @@ fn a_flight_is_replayed() {
     assert!(report["accuracy"]["error_m"].as_f64().is_some_and(|error| error < 15.0));
     assert_eq!(report["accuracy"]["error_after_s"].as_array().map(Vec::len), Some(5));
     assert_eq!(report["accuracy"]["in_90_percent_region"], true);
-    // At one metre, 100 m from the nearest measurement: an exponent that is 0.6 off makes 12 dB.
+    // The level at one metre, 100 m from the nearest measurement: an exponent that is off by 0.6 makes 12 dB.
     assert!(report["level_db"].as_f64().is_some_and(|level| (level + 20.0).abs() < 15.0));
     assert!(report["sd_m"].as_f64().is_some_and(|sd| sd > 1.0));
     let written = fs::read_to_string(&track).expect("a track");
@@ -109,7 +109,7 @@ fn a_replay_is_written_for_viewers() {
 #[test]
 fn path_losses_through_a_city_need_no_level() {
     let desk = Desk::new();
-    // What the urban channel expects with a line of sight, 800 m above a circle, of a user at (900, 1100).
+    // The urban channel's expected loss with a line of sight, from 800 m above a circle to a user at (900, 1100).
     let row = |k: u32| {
         let angle = f64::from(k) * std::f64::consts::FRAC_PI_6;
         let (x, y) = (1000.0 + 667.0 * angle.cos(), 1000.0 + 667.0 * angle.sin());
@@ -129,7 +129,7 @@ fn path_losses_through_a_city_need_no_level() {
     assert!(report["accuracy"]["error_m"].as_f64().is_some_and(|error| error < 60.0));
     assert!(report["level_db"].is_null());
     assert_eq!((&report["warnings"], &report["health"]["state"]), (&value!([]), &value!("good")));
-    // As levels of a transmitter that nobody knows.
+    // As levels of an unknown transmitter.
     let levels = rows.lines().map(|line| {
         let (rest, loss) = line.rsplit_once(',').expect("fields");
         format!("{rest},{}\n", 17.0 - loss.parse::<f64>().expect("a loss"))

@@ -1,4 +1,4 @@
-//! Recordings that are fetched: from a server of this machine.
+//! Tests of downloads of recordings, from a server on this machine.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -15,7 +15,7 @@ use crate::program::{Desk, host_sim, refusal, text};
 
 const GOOD: &[u8] = b"t,anchor,range\n0,1,2.5\n";
 
-/// A server that has `/data/good.csv` and `/data/changed.csv`, and how often it was asked.
+/// A server with `/data/good.csv` and `/data/changed.csv`, and its number of requests.
 fn server() -> (String, Arc<AtomicUsize>) {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let address = format!("http://{}", listener.local_addr().expect("an address"));
@@ -50,7 +50,7 @@ fn sum(bytes: &[u8]) -> String {
     })
 }
 
-/// Whether nothing that fetches is installed, which is said.
+/// Whether no download program is installed, in which case a message is printed.
 fn is_helpless() -> bool {
     let has = |program: &str| Command::new(program).arg("--version").output().is_ok();
     let is_helpless = !has("curl") && !has("wget");
@@ -60,7 +60,8 @@ fn is_helpless() -> bool {
     is_helpless
 }
 
-/// Four files: one as it should be, one that is another, one that the server does not have, one that nobody passes on.
+/// A list of four files: one correct, one with other contents, one missing on the server, and one that is not
+/// redistributed.
 fn list(desk: &Desk, server: &str) -> String {
     let good = sum(GOOD);
     let text = format!(
@@ -103,7 +104,7 @@ fn each_file_is_checked_before_it_has_its_name() {
     assert_eq!(names, ["good.csv"], "nothing else is left");
     assert_eq!(fs::read(desk.path("to/data/good.csv")).expect("the file"), GOOD);
 
-    // What is there is not fetched again; what was changed is.
+    // Existing files are not fetched again; changed ones are.
     asked.store(0, Ordering::Relaxed);
     assert!(text(&fetch().stdout).starts_with("0 fetched, 1 there already"));
     assert_eq!(asked.load(Ordering::Relaxed), 2, "the two that are missing");
@@ -163,7 +164,7 @@ fn a_name_that_is_not_in_the_list_is_refused_with_those_that_are() {
     assert!(sentence.contains("expected one of data, secret, or"), "{sentence}");
 }
 
-/// A refusal that names the file, after what is told of the others.
+/// Asserts a refusal that names the file, after the outcome of the others.
 fn refuse_and_name(arguments: &[&str]) {
     let output = host_sim(&[&["fetch-data"], arguments].concat());
     assert_eq!(output.status.code(), Some(2));

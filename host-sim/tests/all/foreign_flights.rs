@@ -1,4 +1,5 @@
-//! The same flight as autopilots log it: the same estimate and innovations, or a refusal that says what helps.
+//! Tests with the same flight as logged by autopilots: the same estimate and innovations, or a refusal that names the
+//! remedy.
 
 use std::fmt::Write;
 
@@ -16,7 +17,7 @@ fn flight() -> Vec<Sample> {
     fly(plant, start, Inputs::Sine, Noise::SENSORS, rng).take(1000).collect()
 }
 
-/// The time of a sample, µs, and the sample.
+/// The samples with their times (µs).
 fn timed(samples: &[Sample]) -> impl Iterator<Item = (u64, &Sample)> {
     (0..).map(|k: u64| k * 10_000).zip(samples)
 }
@@ -71,7 +72,7 @@ fn ardupilot(samples: &[Sample]) -> Vec<u8> {
     log
 }
 
-/// The same as text.
+/// The flight as a text log of `ArduPilot`.
 fn ardupilot_text(samples: &[Sample]) -> String {
     let mut text = "FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\n\
         FMT, 130, 36, IMU, QBf, TimeUS,I,GyrY\nFMT, 141, 20, ARSP, QBf, TimeUS,I,Airspeed\n\
@@ -117,7 +118,7 @@ fn px4(samples: &[Sample]) -> Vec<u8> {
     log
 }
 
-/// Fails if numbers in two reports differ by more than a hundredth of a percent and a millionth.
+/// Fails if numbers in two reports differ by more than a hundredth of a percent plus a millionth.
 fn assert_near(found: &Value, expected: &Value, name: &str) {
     match (found, expected) {
         (Value::Array(found), Value::Array(expected)) => {
@@ -170,7 +171,7 @@ fn what_an_autopilot_does_not_log_an_option_says() {
     assert!(sentence.contains(expected) && sentence.contains("--units delta_e="), "{sentence}");
     let sentence = refusal(&[&replay[..], &["--units", "t=ms,delta_e=deg"]].concat());
     assert!(sentence.contains("found one of t"), "{sentence}");
-    // The same options say the units of a table.
+    // The same options state the units of a table.
     let degrees = csv(&samples);
     let degrees = degrees.lines().skip(1).map(|line| {
         let mut fields: Vec<f64> =

@@ -1,4 +1,5 @@
-//! The same ranges, levels and flights as other programs write them: the same answer, or a refusal that says what helps.
+//! Tests with the same ranges, levels and flights as written by other programs: the same answer, or a refusal that
+//! names the remedy.
 
 use std::fmt::Write;
 use std::fs;
@@ -8,7 +9,7 @@ use serde_json::Value;
 use crate::program::{Desk, host_sim, json, refusal};
 use crate::room::Room;
 
-/// Time in s, anchor and range in m of each line of a log.
+/// The time (s), anchor and range (m) on each line of a log.
 fn rows(log: &str) -> Vec<(f64, usize, f64)> {
     let text = fs::read_to_string(log).expect("a log");
     let row = |line: &str| {
@@ -35,7 +36,7 @@ fn lines<T>(rows: impl IntoIterator<Item = T>, line: impl Fn(T) -> String) -> St
     rows.into_iter().map(|row| line(row) + "\n").collect()
 }
 
-/// A table with commas as another program writes it.
+/// A comma-separated table as another program writes it.
 fn rewritten(text: &str, separator: &str, decimal: &str) -> String {
     text.replace(',', separator).replace('.', decimal)
 }
@@ -207,7 +208,7 @@ fn levels_of_any_program_give_the_same_place() {
         let off = (found[0] - plain[0]).hypot(found[1] - plain[1]);
         assert!(off < 0.05, "{name}: {off} m");
     }
-    // By latitude and longitude, counted from the first measurement.
+    // Positions by latitude and longitude, relative to the first measurement.
     let degrees = [1.0, 1.0 / 69_460.0, 1.0 / 111_267.0, 1.0, 1.0];
     let log = desk.file("degrees.csv", {
         let line = |row: &[f64; 5]| {

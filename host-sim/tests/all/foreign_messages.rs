@@ -1,4 +1,4 @@
-//! Messages of ROS and of this program itself: the same answer as from plain text.
+//! Tests with messages of ROS and of this program itself: the same answer as from plain text.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,7 +13,7 @@ use serde_json::Value;
 use crate::program::{Desk, host_sim, json, refusal};
 use crate::room::Room;
 
-/// Time in ns, anchor and range in m of each line of a log.
+/// The time (ns), anchor and range (m) on each line of a log.
 fn rows(log: &str) -> Vec<(u64, u8, f64)> {
     let text = fs::read_to_string(log).expect("a log");
     let row = |line: &str| {
@@ -58,7 +58,7 @@ fn bag(rows: &[(u64, u8, f64)]) -> Vec<u8> {
     bag
 }
 
-/// MCAP of ROS 2 with messages as `uwb_driver/UwbRange` has them, shortened.
+/// An MCAP file of ROS 2 with messages like `uwb_driver/UwbRange`, shortened.
 fn ros2(rows: &[(u64, u8, f64)]) -> Vec<u8> {
     let options = WriteOptions::new().compression(None);
     let mut file = Writer::with_options(Cursor::new(Vec::new()), options).expect("a file");
@@ -68,7 +68,7 @@ fn ros2(rows: &[(u64, u8, f64)]) -> Vec<u8> {
     let channel_id = file.add_channel(schema, "/uwb", "cdr", &BTreeMap::new()).expect("a channel");
     for &(ns, anchor, range) in rows {
         let numbers = [range as f32, 0.03].map(f32::to_le_bytes).concat();
-        // The numbers stand at a multiple of four bytes behind the first four.
+        // The numbers are aligned to four bytes after the first four.
         let message =
             [&[0, 1, 0, 0][..], &stamp(ns), &[2, 0, 0, 0], b"u\0", &[9, anchor], &numbers].concat();
         let header = MessageHeader { channel_id, sequence: 0, log_time: ns, publish_time: ns };
@@ -137,7 +137,7 @@ fn what_is_written_of_a_walk_is_the_same_walk() {
     }
 }
 
-/// A flight round a user: ns, latitude, longitude, height, level.
+/// A flight around a user: time (ns), latitude, longitude, height, level.
 fn flight() -> Vec<(u64, [f64; 4])> {
     let row = |k: u32| {
         let (angle, radius) = (f64::from(k) * 0.7, 50.0 + 7.0 * f64::from(k));
@@ -149,7 +149,7 @@ fn flight() -> Vec<(u64, [f64; 4])> {
     (0..60).map(row).collect()
 }
 
-/// `sensor_msgs/NavSatFix` with two numbers of `std_msgs` in a bag of ROS 1, …
+/// A bag of ROS 1 with `sensor_msgs/NavSatFix` and two numbers of `std_msgs`.
 fn bag_of_levels(rows: &[(u64, [f64; 4])]) -> Vec<u8> {
     const FIX: &str = "Header header\nsensor_msgs/NavSatStatus status\nfloat64 latitude\nfloat64 longitude\n\
         float64 altitude\nfloat64[9] position_covariance\nuint8 position_covariance_type\n=====\n\
@@ -186,7 +186,7 @@ fn bag_of_levels(rows: &[(u64, [f64; 4])]) -> Vec<u8> {
     bag
 }
 
-/// … and in MCAP of ROS 2, whose definitions of `std_msgs` are missing.
+/// An MCAP file of ROS 2 with `sensor_msgs/NavSatFix` and two numbers of `std_msgs`, whose definitions are missing.
 fn mcap_of_levels(rows: &[(u64, [f64; 4])]) -> Vec<u8> {
     let options = WriteOptions::new().compression(None);
     let mut file = Writer::with_options(Cursor::new(Vec::new()), options).expect("a file");
@@ -200,7 +200,8 @@ fn mcap_of_levels(rows: &[(u64, [f64; 4])]) -> Vec<u8> {
     for &(ns, [latitude, longitude, height, level]) in rows {
         let numbers = [latitude, longitude, height + 90.0].into_iter().chain([1.0; 9]);
         let numbers: Vec<u8> = numbers.flat_map(f64::to_le_bytes).collect();
-        // Behind the first four bytes: stamp, "g" and its end, status and service at 14 and 16, the doubles at 24.
+        // After the first four bytes: timestamp, "g" with its terminator, status and service at 14 and 16, the doubles
+        // at 24.
         let header = [&[0, 1, 0, 0][..], &stamp(ns), &[2, 0, 0, 0], b"g\0", &[0, 0, 1, 0], &[0; 6]];
         let place = [&header.concat()[..], &numbers, &[2]].concat();
         let plain = |value: f64| [&[0, 1, 0, 0][..], &value.to_le_bytes()].concat();
@@ -237,7 +238,7 @@ fn levels_in_messages_give_the_same_place() {
         let told = report["import"].to_string();
         assert!(told.contains("/radio/rssi, places of /gps/fix, heights of /rel_alt"), "{told}");
     }
-    // The altitude is no height above anybody.
+    // The altitude is not a height above the user.
     let mut bag = bag_of_levels(&rows);
     let name = b"/rel_alt";
     while let Some(at) = bag.windows(name.len()).position(|it| it == name) {

@@ -1,4 +1,4 @@
-//! Senders in other languages, of `contrib/senders`: what they send arrives as it was meant.
+//! Tests of the senders in other languages, in `contrib/senders`: their messages arrive as intended.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use crate::live_cli::{address, listening, report};
 use crate::program::{Desk, is_missing};
 use crate::sender::decoded;
 
-/// What both senders send.
+/// The message that both senders send with this number.
 fn sent(number: u16) -> Message {
     let time_us = u64::from(number) * 10_000;
     let seconds = f32::from(number) / 100.0;
@@ -21,7 +21,7 @@ fn sent(number: u16) -> Message {
     Imu { time_us, specific_force, angular_rate }.into()
 }
 
-/// Whether they say the same, to the last digits of single precision.
+/// Whether two messages are equal to the last digits of single precision.
 fn agree(a: &Message, b: &Message) -> bool {
     let close = |a: f32, b: f32| (a - b).abs() < 1e-6;
     match (a, b) {
@@ -40,7 +40,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../contrib/senders")
 }
 
-/// Lets a command send, which is told address and port, and looks at what was recorded.
+/// Runs a sender, which is given address and port, and checks the recording.
 fn receive(command: &mut Command) {
     let desk = Desk::new();
     let recording = desk.named("sent.frames");

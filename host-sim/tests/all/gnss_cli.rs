@@ -1,4 +1,4 @@
-//! The GNSS receiver from outside: exit status, standard output, standard error, files.
+//! Tests of the GNSS receiver's commands: exit status, standard output, standard error, files.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,12 +7,12 @@ use crate::program::{Desk, host_sim, json, refusal, rows_of, text};
 use crate::station::{self, BEGIN, Fault, INTERVAL, MARKER, satellites};
 use serde_json::Value;
 
-/// Epochs of a recording of an hour and twenty minutes.
+/// The number of epochs in a recording of an hour and twenty minutes.
 const EPOCHS: u32 = 160;
-/// Orbits up to here serve all of it, s.
+/// The end of orbits that cover the whole recording (s).
 const LATE: f64 = 18_000.0;
 
-/// Files of a receiver, and the command that replays them.
+/// Writes the files of a receiver, and returns the command that replays them.
 fn replay(
     desk: &Desk,
     epochs: u32,
@@ -66,7 +66,7 @@ fn a_receiver_is_found() {
     for (measure, limit) in [("final_3d_m", 0.02), ("rms_3d_m", 0.02), ("convergence_min", 30.0)] {
         assert!(accuracy[measure].as_f64().is_some_and(|it| it < limit), "{accuracy}");
     }
-    // Nothing is wrong but that the loading of the oceans is not known.
+    // The only warning is that the ocean loading is not known.
     assert!(matches!(&*warnings(&found), [one] if one.contains("--blq")), "{found}");
 
     let (header, track) = rows_of::<7>(&track);
@@ -80,7 +80,7 @@ fn a_receiver_is_found() {
     let (first, _) = residuals.lines().nth(1).and_then(|row| row.rsplit_once(',')).expect("a row");
     assert_eq!(first.split(',').count(), 12);
     assert!(residuals.lines().nth(1).is_some_and(|row| row.ends_with(",new")));
-    // Nothing else is left on the desk.
+    // There are no other files on the desk.
     assert_eq!(fs::read_dir(desk.path(".")).expect("the folder").count(), 5);
 
     let table = host_sim(&with(&files, &more));
@@ -123,7 +123,7 @@ fn the_truth_serves_accuracy_alone() {
     };
     let (bare, without) = track("bare.csv", &[]);
     assert!(without["accuracy"].is_null());
-    // A minus at the beginning is part of the number.
+    // A leading minus sign is part of the number.
     let (wrong, elsewhere) = track("wrong.csv", &["--truth", "-3582104.7,532590.2,5232755.1"]);
     assert!(elsewhere["accuracy"]["final_3d_m"].as_f64().is_some_and(|error| error > 1e6));
     assert!(elsewhere["accuracy"]["rms_3d_m"].is_null(), "an hour has not passed");
@@ -145,7 +145,7 @@ fn until_is_the_last_epoch() {
 #[test]
 fn epochs_without_a_solution_are_told_with_the_reason() {
     let desk = Desk::new();
-    // Two epochs with three satellites at the beginning; orbits end after half an hour.
+    // The first two epochs have three satellites; the orbits end after half an hour.
     let fault = |epoch, prn| (epoch > 1 || prn % 10 == 3).then_some(Fault::NONE);
     let found = report(&replay(&desk, EPOCHS, 9000.0, fault), &["--truth", &marker()]);
     assert_eq!((&found["epochs"], &found["solved"]), (&EPOCHS.into(), &59.into()));
@@ -153,7 +153,7 @@ fn epochs_without_a_solution_are_told_with_the_reason() {
     assert!(told.contains("101 epochs without a solution, the first at 7200 s: fewer"), "{told}");
     assert!(told.contains("observations without an orbit: G"), "{told}");
     assert!(found["unused"]["no_orbit"].as_u64().is_some_and(|count| count > 500));
-    // It is those of the first epoch that count.
+    // The minutes count from the first epoch, which has no solution.
     assert!(found["accuracy"]["convergence_min"].as_f64().is_some_and(|it| it >= 1.0));
 
     let incomplete = Fault { incomplete: true, ..Fault::NONE };
@@ -195,7 +195,7 @@ fn faults_are_counted_and_a_gap_is_no_slip() {
         _ => Some(Fault::NONE),
     });
     let found = report(&files, &["--residuals", &residuals]);
-    // An outlier of the code may look like slips of its own.
+    // An outlier of the code may also appear as slips.
     let kinds = found["slips_by_kind"].as_object().expect("an object");
     assert_eq!(found["slips"], kinds.values().filter_map(Value::as_u64).sum::<u64>());
     assert_eq!(kinds["loss_of_lock"], 1);
@@ -223,7 +223,7 @@ fn all_filters_are_compared() {
         assert_eq!((&filter["epochs"], &filter["solved"]), (&EPOCHS.into(), &61.into()));
         assert!(filter["accuracy"]["final_3d_m"].as_f64().is_some_and(|it| it < 0.1), "{filter}");
     }
-    // What is the same for all is told once.
+    // A warning that is the same for all filters is given once.
     assert_eq!(warnings(&found).iter().filter(|it| it.contains("without a solution")).count(), 1);
     let alone =
         report(&files, &["--filter", "gkf", "--mode", "kinematic", "--process-noise", "1e-4"]);
@@ -231,7 +231,7 @@ fn all_filters_are_compared() {
     let table = host_sim(&with(&all, &["--printed"]));
     assert!(text(&table.stdout).contains("rkf (published)"));
     assert!(!text(&table.stdout).contains("gkf (published)"));
-    // The same answer at any number of threads.
+    // The answer does not depend on the number of threads.
     let run = |threads: &str| {
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_host-sim"));
         command.args(&all).arg("--json").env("RAYON_NUM_THREADS", threads);

@@ -1,6 +1,6 @@
-//! The GNSS replay on recordings beside the repository, `../shared/data/gnss`: what is reported, and what each
-//! correction is worth. Without them each test says SKIPPED and passes; with `KESTIRIM_REQUIRE_DATA=1` it fails
-//! instead.
+//! Tests of the GNSS replay on recordings beside the repository, `../shared/data/gnss`: the report, and the value of
+//! each correction. Without the recordings each test reports SKIPPED and passes; with `KESTIRIM_REQUIRE_DATA=1` it
+//! fails instead.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use host_sim::system::{AnySystem, Files, Settings, Source};
 use host_sim::systems::gnss::Gnss;
 use serde_json::Value;
 
-/// A station: its files, and where it is.
+/// A station with its files and its true position.
 struct Station {
     desk: Desk,
     arguments: Vec<String>,
@@ -26,7 +26,7 @@ fn folder() -> Option<PathBuf> {
     }
     let required = env::var("KESTIRIM_REQUIRE_DATA").is_ok_and(|value| value == "1");
     assert!(!required, "KESTIRIM_REQUIRE_DATA=1, but {} is absent", folder.display());
-    // Not `eprintln!`, which the test runner swallows when the test passes.
+    // Not `eprintln!`, which the test runner captures when the test passes.
     let _ = writeln!(io::stderr(), "SKIPPED: recordings: {} is absent", folder.display());
     None
 }
@@ -82,7 +82,7 @@ impl Station {
     }
 }
 
-/// Root mean square of what is between two tracks after the first hour, m.
+/// The root mean square distance between two tracks after the first hour (m).
 fn between(a: &[[f64; 4]], b: &[[f64; 4]]) -> f64 {
     assert_eq!(a.len(), b.len());
     let late: Vec<_> = a.iter().zip(b).filter(|(a, _)| a[0] >= 3600.0).collect();
@@ -96,7 +96,7 @@ fn rms(report: &Value) -> f64 {
     report["accuracy"]["rms_3d_m"].as_f64().expect("a number")
 }
 
-/// GRG's orbits and clocks were made with `igs14_2108.atx`, the antennas of the file are of `IGS20_2417`.
+/// GRG's orbits and clocks were computed with `igs14_2108.atx`, but the antennas in the file are those of `IGS20_2417`.
 #[test]
 fn antennas_of_another_edition_are_told() {
     let (Some(esbc), Some(acor)) = (Station::esbc(), Station::acor()) else { return };
@@ -121,11 +121,11 @@ fn every_epoch_counts() {
         assert!((written - reported.as_f64().expect("a number")).abs() < 1e-6);
     }
     assert!(rms(&until) < 0.1 && until["accuracy"]["convergence_min"].is_number());
-    // Without the truth, the same.
+    // The result is the same without the truth.
     let bare = esbc.report(&["--until", "85500"]);
     assert!(bare["accuracy"].is_null());
     assert_eq!(bare["position_ecef_m"], until["position_ecef_m"]);
-    // Orbits end at 23:45.
+    // The orbits end at 23:45.
     let whole = esbc.report(&[]);
     assert_eq!((&whole["epochs"], &whole["solved"]), (&2880.into(), &2851.into()));
     assert_eq!(whole["position_ecef_m"], until["position_ecef_m"]);
@@ -137,7 +137,7 @@ fn every_epoch_counts() {
     assert!(warnings.contains("without an orbit") && warnings.contains("G04"), "{warnings}");
 }
 
-/// What the page shows of a day: where its satellites stood, what their directions are worth, which of them is the worst.
+/// The page of a day: the positions of its satellites, their dilution of precision, and the worst satellite.
 #[test]
 fn a_day_can_be_looked_at() {
     let Some(esbc) = Station::esbc() else { return };
@@ -177,7 +177,7 @@ fn a_packed_file_that_was_cut_off_is_refused() {
     assert!(sentence.contains("cut.rnx.gz: is a gzip file that was cut off"), "{sentence}");
 }
 
-/// Clocks every quarter of an hour.
+/// The clocks of ACOR are given every quarter of an hour.
 #[test]
 fn gradients_are_refused_where_clocks_hide_them() {
     let Some(acor) = Station::acor() else { return };
@@ -196,17 +196,16 @@ fn all_filters_on_one_file() {
         assert_eq!(filter["solved"], 2880);
         assert!(filter["accuracy"]["rms_3d_m"].is_number());
     }
-    // An exact one: none of the plain filter's observations are rejected.
+    // An exact value: none of the plain filter's observations are rejected.
     assert_eq!((&filters[0]["filter"], &filters[0]["rejected"]), (&"gkf".into(), &0.into()));
     assert!(rms(&filters[0]) < 0.05);
 }
 
-/// What leaving a part of the model out costs the plain filter, which does nothing about what does not fit. The
-/// distance between the tracks, with and without it, is what the correction does; the RMS error says whether that
-/// is for the better.
+/// The cost of omitting a part of the model with the plain filter, which does not compensate for misfits. The distance
+/// between the tracks with and without a correction is its effect; the RMS error shows whether it is an improvement.
 ///
-/// Shapiro's delay is weak: common to all satellites but for 7 mm, it moves the height by 5 mm, less than
-/// anything else in these recordings; ocean loading is 15 mm near the coast, for those who know it.
+/// The Shapiro delay is a weak effect: common to all satellites but for 7 mm, it moves the height by 5 mm, less than
+/// anything else in these recordings; ocean loading is 15 mm near the coast, if it is known.
 #[test]
 fn each_correction_matters() {
     let (Some(esbc), Some(acor)) = (Station::esbc(), Station::acor()) else { return };
@@ -233,7 +232,7 @@ fn each_correction_matters() {
     }
 }
 
-/// As the issue has it: without the tides the default filter, too, loses 25 mm.
+/// Without the tides the default filter, too, loses 25 mm, as stated in the issue.
 #[test]
 fn tides_cost_more_than_25_mm() {
     let (Some(esbc), Some(acor)) = (Station::esbc(), Station::acor()) else { return };

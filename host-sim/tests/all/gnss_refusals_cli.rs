@@ -1,4 +1,4 @@
-//! What the replay of a GNSS receiver refuses: always with one sentence, never with a panic.
+//! Tests of refusals by the replay of a GNSS receiver: always with one sentence, never with a panic.
 
 use std::fs;
 
@@ -69,7 +69,7 @@ fn options_that_do_not_fit() {
         refusal(&arguments);
     }
     assert_eq!(fs::read_dir(files.desk.path(".")).expect("the folder").count(), 3);
-    // f64 may be asked for.
+    // f64 may be requested.
     json(&host_sim(&files.arguments(&["--scalar", "f64", "--json"])));
 }
 
@@ -115,7 +115,7 @@ fn a_wrong_line_is_named() {
     }
 }
 
-/// Wherever a file is cut off, and whatever a byte of it becomes.
+/// A file cut off anywhere, or with any byte changed, never causes a panic.
 #[test]
 fn damaged_files_never_panic() {
     let files = Files::new();

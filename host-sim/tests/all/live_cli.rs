@@ -1,4 +1,4 @@
-//! `host-sim live` from outside: killed, on a serial port, playing back, refusing.
+//! Tests of `host-sim live`: killed, on a serial port, playing back, refusing.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
@@ -10,12 +10,12 @@ use crate::sender::{decoded, frames, length, send, wait_for};
 use kestirim_telemetry::{Health, Imu, Message};
 use serde_json::Value;
 
-/// The program while it listens, and the line in which it says to what.
+/// Starts the program, and returns it with the line that announces its source.
 pub(crate) fn listening(arguments: &[&str]) -> (Child, String) {
     let mut child = Command::new(env!("CARGO_BIN_EXE_host-sim"))
         .args(["live", "--headless"])
         .args(arguments)
-        // No test leaves it behind.
+        // The limit ends it if a test does not.
         .args(["--seconds", "300"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -24,7 +24,7 @@ pub(crate) fn listening(arguments: &[&str]) -> (Child, String) {
     let mut line = String::new();
     let mut stderr = BufReader::new(child.stderr.take().expect("a pipe"));
     stderr.read_line(&mut line).expect("it says where it listens");
-    // What it says later must find a reader, too.
+    // The pipe must be drained so that later output does not block the program.
     std::thread::spawn(move || stderr.read_to_end(&mut Vec::new()));
     (child, line)
 }
@@ -55,7 +55,7 @@ fn a_killed_program_has_written_down_all_that_came() {
     let sent = healths(20_000);
     let bytes = frames(sent.iter().copied());
     send(address(&line), bytes[..100_000].chunks(777), || length(&recording));
-    // In the middle of a frame, and while nobody has said that it is to end.
+    // The kill comes in the middle of a frame, without any prior request to end.
     child.kill().expect("it can be killed");
     child.wait().expect("it is dead");
     let recorded = fs::read(&recording).expect("the recording");
@@ -90,7 +90,7 @@ fn a_torn_last_frame_is_counted() {
         json(&host_sim(&["live", "--headless", "--file", &recording, "--json"]))["counts"].clone()
     };
     assert_eq!((&counts(0)["received"], &counts(0)["torn"]), (&10.into(), &0.into()));
-    // Without its delimiter alone it is whole.
+    // A frame that only lacks its delimiter is complete.
     assert_eq!((&counts(1)["received"], &counts(1)["torn"]), (&10.into(), &0.into()));
     assert_eq!((&counts(4)["received"], &counts(4)["torn"]), (&9.into(), &1.into()));
     let table = host_sim(&["live", "--headless", "--file", &desk.named("cut.frames")]);
@@ -106,7 +106,7 @@ fn a_serial_port_is_read_until_it_is_unplugged() {
     let desk = Desk::new();
     let recording = desk.path("serial.frames");
     let named = desk.named("serial.frames");
-    // The program that is to notice the end must not hold it.
+    // The program, which is to notice the hang-up, must not inherit the cable.
     let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC;
     let cable = openpt(flags).expect("a pseudo-terminal");
     grantpt(&cable).and_then(|()| unlockpt(&cable)).expect("it can be used");
@@ -120,7 +120,7 @@ fn a_serial_port_is_read_until_it_is_unplugged() {
         specific_force: [f32::from_bits((n % 256) as u32 * 0x0101_0101); 3],
         angular_rate: [n as f32; 3],
     };
-    // All bytes that a terminal would make something else of are among them.
+    // The bytes include all those that a terminal would translate.
     let bytes = frames((0..500).map(imu));
     let mut cable = fs::File::from(cable);
     for piece in bytes.chunks(1000) {

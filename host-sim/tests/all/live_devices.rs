@@ -1,4 +1,4 @@
-//! `host-sim live` on a line that devices share which say who they are.
+//! Tests of `host-sim live` on a line shared by devices that identify themselves.
 
 use std::ffi::OsString;
 use std::net::UdpSocket;
@@ -12,13 +12,13 @@ use crate::live_senders::{played, played_with, walk, warns};
 use crate::program::Desk;
 use crate::sender::{frame, frame_of, length, wait_for};
 
-/// The frames of a walk by a device.
+/// The frames of a walk, sent by a device.
 fn of(device: u32, boot: u32, walk: &[Imu]) -> Vec<Vec<u8>> {
     let numbered = walk.iter().enumerate();
     numbered.map(|(number, &imu)| frame_of(device, boot, imu, number)).collect()
 }
 
-/// Lists in turn, one of each, until the last is at its end.
+/// Interleaves lists, one element of each in turn, until the longest ends.
 fn in_turn(lists: &[Vec<Vec<u8>>]) -> Vec<Vec<u8>> {
     let longest = lists.iter().map(Vec::len).max().unwrap_or(0);
     let one_of_each = (0..longest).flat_map(|at| lists.iter().filter_map(move |it| it.get(at)));
@@ -39,7 +39,7 @@ fn each_device_is_followed_as_if_it_were_alone() {
         played(&desk, &frames)
     });
     let mut lists: Vec<_> = (10..).zip(&walks).map(|(device, walk)| of(device, 4, walk)).collect();
-    // One loses frames, and two of its frames change places.
+    // One device loses frames, and two of its frames are swapped.
     lists[2].drain(100..110);
     lists[2].swap(200, 201);
     let report = played(&desk, &in_turn(&lists));
@@ -52,7 +52,7 @@ fn each_device_is_followed_as_if_it_were_alone() {
     assert_eq!(row(&report, 12)["lost"], 10);
     assert_eq!(report["counts"]["lost"], 10);
     assert_eq!(report["counts"]["left_out"], 0);
-    // The first that is heard is shown in detail, if nobody says otherwise.
+    // Unless specified, the first device heard is shown in detail.
     assert_eq!(report["position"], alone[0]["position"]);
     let report = played_with(&desk, &in_turn(&lists), &["--device", "11"]);
     assert_eq!(report["position"], alone[1]["position"]);
@@ -76,7 +76,7 @@ fn a_device_that_is_switched_on_again_begins_anew_at_once() {
 fn two_senders_with_one_device_number_are_told() {
     let desk = Desk::new();
     let (first, second) = (walk(1), walk(2));
-    // Of the same boot, of an earlier one, and of one that does not count its boots.
+    // A second sender with the same boot, with an earlier one, and one that does not count its boots.
     let count = first.len().min(second.len());
     let alone = played(&desk, &of(7, 3, &first[..count]));
     for boot in [3, 2] {

@@ -1,4 +1,4 @@
-//! `host-sim live` on a line on which frames overtake each other, or which two senders share.
+//! Tests of `host-sim live` on a line with reordered frames, or shared by two senders.
 
 use std::ffi::OsString;
 use std::net::UdpSocket;
@@ -14,7 +14,7 @@ use serde_json::Value;
 use crate::program::{Desk, host_sim, json};
 use crate::sender::{frame, length, wait_for};
 
-/// A foot's samples.
+/// The IMU samples of a walk.
 pub(crate) fn walk(seed: u64) -> Vec<Imu> {
     let mut rng = stream(seed, 0);
     let ideal = Scenario::draw(&mut rng).ideal_imu(100.0);
@@ -32,12 +32,12 @@ fn numbered(walk: &[Imu], first: usize) -> Vec<Vec<u8>> {
     walk.iter().enumerate().map(|(index, &imu)| frame(imu, first + index)).collect()
 }
 
-/// What the program makes of a recording.
+/// The report on a recording of these frames.
 pub(crate) fn played(desk: &Desk, frames: &[Vec<u8>]) -> Value {
     played_with(desk, frames, &[])
 }
 
-/// The same with more options.
+/// The report on a recording of these frames, with further options.
 pub(crate) fn played_with(desk: &Desk, frames: &[Vec<u8>], more: &[&str]) -> Value {
     let file = desk.file("line.frames", frames.concat());
     let options = ["live", "--headless", "--file", &file, "--system", "pedestrian", "--json"];
@@ -89,13 +89,13 @@ fn of_two_senders_to_one_port_the_first_is_followed_and_the_second_told() {
     let live = Live::of(matches.subcommand_matches("live").expect("the command")).expect("a port");
     let address = live.address().expect("it listens");
     let [a, b] = [0; 2].map(|_| UdpSocket::bind("127.0.0.1:0").expect("a socket"));
-    // Both count from zero: nothing but the address tells them apart.
+    // Both count from zero: only their addresses tell them apart.
     let (first, second) = (numbered(&walk(1), 0), numbered(&walk(2), 0));
     let mut sent = 0;
     for (index, (mine, others)) in first.iter().zip(&second).enumerate() {
         a.send_to(mine, address).expect("it is sent");
         b.send_to(others, address).expect("it is sent");
-        // The second sender's first datagram is taken: nobody knows yet that there are two.
+        // The second sender's first datagram is accepted, as it is not yet known that there are two.
         sent += mine.len() as u64 + if index == 0 { others.len() as u64 } else { 0 };
         wait_for("a frame", || length(Path::new(&recording)) >= sent);
     }

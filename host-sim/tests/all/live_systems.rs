@@ -1,4 +1,4 @@
-//! What is followed while it comes ends where a replay of the same log ends.
+//! Tests that a live stream ends with the same result as a replay of the same log.
 
 use std::fmt::Write;
 

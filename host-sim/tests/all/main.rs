@@ -1,7 +1,7 @@
-//! The program from outside, one module a subject, in one binary: linking the library a dozen times took longer than
-//! most of the tests. `cargo test -p host-sim --test all robot_cli::` runs those of one.
+//! The tests of the program, one module per subject, in one binary: linking the library a dozen times took longer than
+//! most of the tests. `cargo test -p host-sim --test all robot_cli::` runs those of one module.
 //!
-//! Apart stand `page`, which alone needs a browser's protocol, and `live_flood`, which measures what is lost when
+//! Separate binaries are `page`, which alone needs a browser's protocol, and `live_flood`, which measures losses while
 //! nothing else keeps the machine busy.
 
 mod calibrate_cli;

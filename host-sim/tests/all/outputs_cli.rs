@@ -1,4 +1,4 @@
-//! What runs write, and what shells and scripts rely on.
+//! Tests of the files that runs write, and of behaviour that shells and scripts rely on.
 
 use std::fs;
 use std::process::Command;
@@ -24,7 +24,7 @@ fn a_run_writes_tables_streams_and_a_report() {
             assert!(cell.parse::<f64>().is_ok_and(f64::is_finite), "{cell:?} in {row:?}");
         }
     }
-    // The paper's number stands beside its own method, and not beside ours.
+    // The published number stands beside the paper's own method, not beside ours.
     let mean = |method: &str| {
         let mut of = rows.iter().filter(|row| &row[1] == "robot-table-1" && &row[4] == method);
         of.find(|row| row[3].starts_with("mean")).map(|row| row[numbers[3]].to_owned())
@@ -71,7 +71,7 @@ fn what_cannot_be_written_is_refused_before_anything_is_calculated() {
         let sentence = refusal(&[&long[..], &[output, &below]].concat());
         assert!(sentence.contains("cannot be written"), "{output}: {sentence}");
     }
-    // Nothing is left where it was tried.
+    // The attempt leaves nothing behind.
     let unmade = desk.named("unmade/report");
     refusal(&["run", "robot", "--report", &unmade, "--csv", &below]);
     assert!(!desk.path("unmade").exists());

@@ -1,4 +1,4 @@
-//! Radios' own stamps, differences, and the survey of anchors from outside.
+//! Tests of radios' own timestamps, of differences, and of the survey of anchors.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use crate::room::{ANCHORS, Room, distance, place};
 use host_sim::random::stream;
 use host_sim::systems::robot::simulate::radio::{Clock, exchange};
 
-/// The room's way in another form of log, and what the position errs by.
+/// The RMSE of the room's track from another form of log.
 fn rmse(room: &Room, log: &str, more: &[&str]) -> f64 {
     let mut arguments = vec!["replay", "robot", "--anchors", &room.anchors, "--log", log];
     arguments.extend(["--truth", &room.truth, "--height", "1", "--json"]);
@@ -31,7 +31,8 @@ fn six_stamps_are_followed_with_and_without_a_level() {
     }
 }
 
-/// Six stamps an exchange with each anchor every 100 ms, each of which measures too long; every ninth is torn apart.
+/// Logs of six timestamps per exchange with each anchor every 100 ms, with ranges too long by `excess`; every ninth
+/// exchange is torn.
 fn stamps(excess: f64) -> String {
     let mut rng = stream(5, 0);
     let tag = Clock::draw(&mut rng);

@@ -1,4 +1,4 @@
-//! The recorded part of the report, from a folder of data.
+//! Tests of the recorded part of the report, from a folder of data.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -7,7 +7,7 @@ use crate::program::{Desk, host_sim, refusal, text};
 
 const ANCHORS: [[f64; 3]; 3] = [[0.0, 0.0, 2.0], [6.0, 0.0, 2.0], [3.0, 5.0, 2.0]];
 
-/// A robot that stands, and whose IMU is still, as a recording that the results are told of would lie in the folder.
+/// Writes a stationary robot with a still IMU to the folder, as one of the recordings whose results are reported.
 fn lay_out(desk: &Desk) {
     let folder = desk.path("data/robot/esp32_wall2");
     fs::create_dir_all(&folder).expect("a folder");
@@ -57,7 +57,7 @@ fn recordings_that_are_there_are_shown_and_the_others_named() {
     let rows: Vec<_> = rows.records().collect::<Result<_, _>>().expect("rows");
     let row = rows.iter().find(|row| &row[1] == "robot-recorded-wall" && &row[2] == "RMSE");
     let row = row.expect("a number of the recording");
-    // The ranges are without noise.
+    // The ranges have no noise.
     assert!(row[5].parse::<f64>().expect("a number") < 5.0, "{row:?}");
     assert_eq!(&row[9], "30", "what is known of it");
     let command = rows.iter().find(|row| &row[3] == "esp32_wall2").expect("the recording");

@@ -1,4 +1,4 @@
-//! The robot's commands from outside.
+//! Tests of the robot's commands.
 
 use std::fmt::Write;
 use std::fs;
@@ -35,7 +35,7 @@ fn every_tracker_follows_in_every_number() {
             assert!(rmse < 0.12, "{tracker} {scalar}: {rmse}");
         }
     }
-    // As printed, the paper's filter stays behind where it was started.
+    // As printed, the paper's filter stays behind at its start.
     assert!(room.rmse(&["--height", "1", "--tracker", "aekf-printed"]) > 0.3);
 }
 
@@ -106,7 +106,7 @@ fn without_a_height_it_is_found_and_said() {
     assert_eq!(report["height"]["biases_m"].as_array().unwrap().len(), 4);
     assert!(report["accuracy"]["rmse_m"].as_f64().unwrap() < 0.15, "{report}");
     assert!(text(&host_sim(&room.replay(&[])).stdout).contains("from the ranges"));
-    // What is known is not looked for.
+    // A known height is not searched for.
     assert_eq!(room.report(&["--height", "1"])["height"], Value::Null);
     assert_eq!(room.report(&["--dim", "3"])["height"], Value::Null);
     let room = Room::clean();
@@ -118,7 +118,7 @@ fn without_a_height_it_is_found_and_said() {
 
 #[test]
 fn a_height_that_ranges_do_not_tell_is_asked_for() {
-    // A tag that stands beside three anchors, and one of which two are heard.
+    // A stationary tag beside three anchors, of which all or only two are heard.
     let desk = Desk::new();
     let places = [[2.8, 0.0, 1.3], [0.1, 0.0, 2.0], [1.9, 4.1, 2.1]];
     let anchors = desk.file("a.csv", "anchor,x,y,z\n0,2.8,0,1.3\n1,0.1,0,2\n2,1.9,4.1,2.1\n");
@@ -227,7 +227,8 @@ fn bad_ranges_are_counted_and_do_no_harm() {
     for scalar in ["f32", "f64", "fixed"] {
         let report = room.report(&["--height", "1", "--scalar", scalar]);
         assert!(report["accuracy"]["rmse_m"].as_f64().unwrap() < 0.12, "{report}");
-        // Infinity, 1000 m, the same again, and what is five seconds old; NaN and −143 m are none.
+        // Rejected are infinity, 1000 m, a repetition, and a range five seconds old; NaN and −143 m do not count as
+        // ranges.
         assert_eq!(report["rejected"].as_u64(), Some(4 * 40), "{report}");
         for (warning, end) in [(0, "not listed: left out"), (1, "no distance: left out")] {
             let told = report["warnings"][warning].as_str().unwrap();
@@ -419,7 +420,7 @@ fn wrong_usage_is_one_sentence() {
 
 #[test]
 fn walls_are_respected() {
-    // Three anchors along a wall see a tag and its mirror image alike.
+    // To three anchors along a wall a tag and its mirror image look alike.
     let desk = Desk::new();
     let anchors = desk.file("a.csv", "anchor,x,y,z\n0,0,0,2\n1,2,0.05,2\n2,4,0,2\n");
     let mut log = "t,anchor,range\n".to_owned();

@@ -1,4 +1,4 @@
-//! The page's scripts: few, and checked as far as their types are known.
+//! Tests of the page's scripts: they are short, and checked as far as their types are known.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::process::Command;
 
 use crate::program::is_missing;
 
-/// Lines of JavaScript that are written here, at most.
+/// The maximum number of lines of own JavaScript.
 const MOST_LINES: usize = 1200;
 
 fn scripts() -> Vec<PathBuf> {
@@ -25,7 +25,7 @@ fn there_is_little_of_it() {
 
 #[test]
 fn types_names_and_results_are_right() {
-    // Debian has it as node-typescript.
+    // Debian's package is node-typescript.
     if is_missing("tsc", "KESTIRIM_REQUIRE_BROWSER") {
         return;
     }

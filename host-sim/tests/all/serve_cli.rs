@@ -1,4 +1,4 @@
-//! `host-sim serve` from outside: who is answered, for how long, and what stays when it ends.
+//! Tests of `host-sim serve`: who is answered, for how long, and what remains when it ends.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -8,16 +8,16 @@ use std::process::{Child, Command, Stdio};
 use crate::program::Desk;
 use crate::sender::wait_for;
 
-/// The program while it serves.
+/// A running server.
 struct Server {
     program: Child,
-    /// `127.0.0.1:PORT`.
+    /// The host and port: `127.0.0.1:PORT`.
     place: String,
     key: String,
 }
 
 impl Server {
-    /// With this folder for what is not to stay.
+    /// Starts the program with this folder for temporary files.
     fn start(desk: &Desk) -> Self {
         let mut program = Command::new(env!("CARGO_BIN_EXE_host-sim"))
             .args(["serve", "--port", "0"])
@@ -41,7 +41,7 @@ impl Server {
         stream
     }
 
-    /// What is answered to a path, with these headers.
+    /// The response to a request for a path with these headers.
     fn get(&self, path: &str, headers: &[&str]) -> String {
         let place = &self.place;
         let headers = headers.iter().fold(String::new(), |all, header| all + header + "\r\n");
@@ -58,7 +58,7 @@ impl Server {
 
 impl Drop for Server {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // The program may have ended by itself.
         let _ = self.program.kill();
         let _ = self.program.wait();
     }
@@ -86,7 +86,7 @@ fn nothing_is_answered_without_the_key_and_the_key_is_handed_over() {
     let handed = server.get(&format!("/?token={}", server.key), &[]);
     assert_eq!(status(&handed), "303");
     let handed = handed.to_lowercase();
-    // The address on which one stays holds no key.
+    // The address after the redirect does not contain the key.
     assert!(handed.contains("\r\nlocation: /\r\n"), "{handed}");
     let cookie = server.cookie().to_lowercase().replace("cookie: ", "set-cookie: ");
     assert!(handed.contains(&format!("{cookie}; httponly")), "{handed}");
@@ -95,7 +95,7 @@ fn nothing_is_answered_without_the_key_and_the_key_is_handed_over() {
         assert_eq!(status(&answer), "200", "{path}");
         assert!(!answer.contains(&server.key), "{path}");
     }
-    // A foreign page has the cookie, too, but says where it is from.
+    // A foreign page has the cookie as well, but its requests state their origin.
     for foreign in ["Origin: http://example.org", "Origin: http://127.0.0.1:1"] {
         assert_eq!(status(&server.get("/api/sources", &[&server.cookie(), foreign])), "403");
     }
@@ -105,7 +105,7 @@ fn nothing_is_answered_without_the_key_and_the_key_is_handed_over() {
 fn a_request_that_does_not_end_is_given_up() {
     let server = Server::start(&Desk::new());
     let stream = server.begin("GET / HTTP/1.1\r\nHost: a\r\n");
-    // Without a limit this waits for ever.
+    // Without a timeout this waits for ever.
     assert_ne!(status(&read(stream)), "200");
 }
 

@@ -1,10 +1,10 @@
-//! Tables are as wide as the terminal.
+//! Tests that tables fit into the terminal.
 
 use std::process::Command;
 
 use crate::program::text;
 
-/// The longest line of a table that a command prints, in columns; None where it prints none.
+/// The width of the widest row of a table that a command prints, in columns; `None` if it prints no table.
 fn widest_row(arguments: &[&str], columns: Option<u16>) -> Option<usize> {
     let mut program = Command::new(env!("CARGO_BIN_EXE_host-sim"));
     program.args(arguments).env_remove("COLUMNS");
@@ -33,7 +33,7 @@ fn tables_of_every_system_fit_into_60_and_80_columns() {
 fn a_pipe_gets_whole_lines() {
     let run = ["run", "uav", "--trials", "2"];
     assert!(widest_row(&run, None) > Some(100));
-    // What makes no sense is not believed.
+    // An implausible width is ignored.
     assert_eq!(widest_row(&run, Some(0)), widest_row(&run, None));
 }
 

@@ -1,4 +1,4 @@
-//! The UAV from outside: exit status, standard output, standard error, files.
+//! Tests of the UAV's commands: exit status, standard output, standard error, files.
 
 use std::process::Command;
 
@@ -12,7 +12,7 @@ fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().expect("an array").iter().map(|it| it.as_f64().expect("a number")).collect()
 }
 
-/// The row of a table whose fields are these.
+/// The row of a table with these values of its fields.
 fn row<'a>(report: &'a Value, table: &str, fields: &[(&str, Value)]) -> &'a Value {
     let mut rows = report[table].as_array().expect("rows").iter();
     let found = rows.find(|row| fields.iter().all(|(name, value)| row[name] == *value));
@@ -23,7 +23,7 @@ fn row<'a>(report: &'a Value, table: &str, fields: &[(&str, Value)]) -> &'a Valu
 fn the_thesis_is_reproduced() {
     let report = json(&host_sim(&["run", "uav", "--json", "--scalar", "f64"]));
     assert_eq!((&report["system"], &report["scalar"]), (&"uav".into(), &"f64".into()));
-    // Times to catch, as the card has them.
+    // The times to catch, as on the card.
     for (published, ours, limit) in [
         ("Figs 6.1–6.4", [5.0, 5.2, 5.4, 8.6], 0.05),
         ("Figs 6.13–6.17", [1.5, 2.0, 0.49, 0.94], 0.005),
@@ -35,7 +35,7 @@ fn the_thesis_is_reproduced() {
         }
         assert_eq!(row["ours_s"], row["limit_s"]);
     }
-    // Errors as predicted.
+    // The errors are as predicted.
     for row in report["accuracy"].as_array().expect("rows") {
         let pairs = numbers(&row["rmse"]).into_iter().zip(numbers(&row["predicted"]));
         for (found, predicted) in pairs {
@@ -43,7 +43,7 @@ fn the_thesis_is_reproduced() {
         }
         assert_eq!(row["refused"], 0);
     }
-    // No u in the errors.
+    // The errors do not depend on u.
     for row in report["independence"].as_array().expect("rows") {
         let (largest, difference) = (numbers(&row["largest_error"]), numbers(&row["difference"]));
         assert!(largest.iter().zip(difference).all(|(all, part)| part < 1e-12 * all), "{row}");
@@ -102,7 +102,7 @@ fn the_answer_depends_on_the_seed_and_not_on_the_threads() {
     assert_ne!(run("1", "7"), run("1", "8"));
 }
 
-/// Ten seconds of a noisy flight of P2, and its truth.
+/// Ten seconds of a noisy flight of P2, including its true states.
 fn flight() -> Vec<Sample> {
     let plant = Plant::P2.discrete(INTERVAL_S);
     let start = [0.0, 0.0, 40.0, 0.53].into();
@@ -138,8 +138,8 @@ fn a_flight_is_replayed() {
     let report = json(&host_sim(&[&files[..], &["--track", &track, "--json"]].concat()));
     assert_eq!((&report["system"], &report["samples"]), (&"uav".into(), &1000.into()));
     assert_eq!((&report["gaps"], &report["interval_s"]), (&0.into(), &0.01.into()));
-    // Settled, the filter is as good as predicted before a measurement (4.7e-4, 9.5e-3, 6.7e-2, 8.6e-4), or
-    // better by having it.
+    // Once settled, the filter is as accurate as predicted before a measurement (4.7e-4, 9.5e-3, 6.7e-2, 8.6e-4), or
+    // better because of it.
     let late = numbers(&report["accuracy"]["late_rmse"]);
     for (found, limit) in late.iter().zip([8e-4, 1.1e-2, 0.11, 1.4e-3]) {
         assert!(*found < limit, "{late:?}");
@@ -184,7 +184,7 @@ fn gaps_and_empty_fields_are_bridged() {
         let report = json(&host_sim(&[&files[..], &["--estimator", estimator, "--json"]].concat()));
         assert_eq!((&report["samples"], &report["gaps"]), (&950.into(), &1.into()));
         assert!(report["missing"].as_u64().is_some_and(|missing| missing > 300));
-        // The input of the line before the gap is held through it, which it was not.
+        // The input of the line before the gap is held through it, unlike in the actual flight.
         let late = numbers(&report["accuracy"]["late_rmse"]);
         assert!(late[0] < 0.01 && late[3] < 0.02, "{late:?}");
     }
@@ -204,14 +204,14 @@ fn a_model_can_come_from_a_file() {
                 \"B\": [[0.3, -0.158], [-100, -3], [0.3, 45], [0, 0]]";
     let continuous = desk.file("p2.json", format!("{{{rows}}}"));
     assert_eq!(replay(&continuous, &[]), replay("P2", &[]));
-    // Counted from a steady flight of nothing, absolute values are deviations.
+    // Relative to a steady flight of all zeros, absolute values are deviations.
     let trim = "\"trim\": {\"x\": [0, 0, 0, 0], \"u\": [0, 0]}";
     let absolute = desk.file("trim.json", format!("{{{rows}, {trim}}}"));
     assert_eq!(replay(&absolute, &["--absolute"]), replay("P2", &[]));
     let named = format!("{{{rows}, \"C\": [[0, 0, 1, 0]], \"outputs\": [\"V\"]}}");
     let airspeed = desk.file("airspeed.json", named);
     assert_ne!(replay(&airspeed, &[]), replay("P2", &[]));
-    // The same in discrete time.
+    // The same model in discrete time.
     let discrete = Plant::P2.discrete(INTERVAL_S);
     let list = |rows: Vec<Vec<f64>>| serde_json::to_string(&rows).expect("numbers");
     let a = list((0..4).map(|i| (0..4).map(|k| discrete.a[(i, k)]).collect()).collect());
@@ -227,7 +227,7 @@ fn a_model_can_come_from_a_file() {
 #[test]
 fn a_trim_is_taken_off_and_put_back() {
     let desk = Desk::new();
-    // The Aerosonde, level with its trim to the last digit: nothing but the trim remains.
+    // The Aerosonde in level flight with its exact trim: the result is the trim itself.
     let line = |k: u32| {
         format!(
             "{:.2},-0.0346972179928,0.5400719021538,-0.0158720815884,0,40,0.0539410884914\n",
@@ -254,7 +254,7 @@ fn a_trim_is_taken_off_and_put_back() {
     assert!(text(&output.stderr).contains("not used: note"), "{}", text(&output.stderr));
     let estimate = numbers(&json(&output)["estimate"]);
     assert!((estimate[2] - 40.0).abs() < 1e-3 && (estimate[3] - 0.053_941_088).abs() < 1e-5);
-    // And by the models of three airspeeds, of which it is the middle one's.
+    // The same by models at three airspeeds, with the flight at the middle one.
     let grid = flown.replace("40,", "[36, 40, 44],").replace(", \"note\": 1", "");
     let model = desk.file("grid.json", grid);
     let files_of_grid = ["replay", "uav", "--log", &log, "--model", &model];

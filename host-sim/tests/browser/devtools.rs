@@ -1,6 +1,7 @@
-//! Chromium over its `DevTools` protocol: a WebSocket and a few of its methods.
+//! Chromium over its `DevTools` protocol: a `WebSocket` and a few of its methods.
 //!
-//! Weighed: `headless_chrome` is built by a program under the GPL, `chromiumoxide` brings the whole protocol as code.
+//! Alternatives considered: `headless_chrome` is built by a program under the GPL, `chromiumoxide` includes the whole
+//! protocol as code.
 
 use std::ffi::OsStr;
 use std::io::{BufRead, BufReader};
@@ -13,22 +14,22 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 use tungstenite::{Message, WebSocket};
 
-/// A browser that does not answer within this time is given up.
+/// The timeout for an answer of the browser.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A browser without a window, with one page; it ends with this.
+/// A headless browser with one page, which ends when this is dropped.
 pub(super) struct Browser {
     program: Child,
     socket: WebSocket<TcpStream>,
     session: Option<String>,
     calls: u64,
-    /// What happened that nobody has looked at: method and parameters.
+    /// Events that have not been looked at yet: method and parameters.
     pub(super) events: Vec<(String, Value)>,
     _profile: TempDir,
 }
 
 impl Browser {
-    /// Starts the program with a window this wide.
+    /// Starts the browser with a window of this width.
     pub(super) fn start(program: &Path, width: u32) -> Self {
         let profile = tempfile::tempdir().expect("a folder for the browser");
         let mut folder = OsStr::new("--user-data-dir=").to_owned();
@@ -40,7 +41,7 @@ impl Browser {
             .args([format!("--window-size={width},900")])
             .arg(folder)
             .arg("about:blank")
-            // What it leaves behind goes with its profile.
+            // Its temporary files are deleted with its profile.
             .env("TMPDIR", profile.path())
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
@@ -52,7 +53,7 @@ impl Browser {
             .map_while(Result::ok)
             .find_map(|line| Some(line.split_once("DevTools listening on ")?.1.to_owned()))
             .expect("it says where it listens");
-        // What it says later must find a reader, too.
+        // The pipe must be drained so that later output does not block the browser.
         std::thread::spawn(move || lines.for_each(drop));
         let place = address.strip_prefix("ws://").and_then(|rest| rest.split('/').next());
         let stream = TcpStream::connect(place.expect("an address")).expect("it listens");
@@ -67,12 +68,12 @@ impl Browser {
         browser
     }
 
-    /// What a method answers.
+    /// The result of a method.
     pub(super) fn call(&mut self, method: &str, parameters: &Value) -> Value {
         self.try_call(method, parameters).unwrap_or_else(|error| panic!("{method}: {error}"))
     }
 
-    /// What a method answers, or its complaint.
+    /// The result of a method, or its error.
     pub(super) fn try_call(&mut self, method: &str, parameters: &Value) -> Result<Value, Value> {
         self.calls += 1;
         let mut call = json!({ "id": self.calls, "method": method, "params": parameters });
@@ -97,7 +98,7 @@ impl Browser {
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // The browser may have ended by itself.
         let _ = self.program.kill();
         let _ = self.program.wait();
     }

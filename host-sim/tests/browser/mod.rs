@@ -1,4 +1,4 @@
-//! A browser that notes down what goes wrong on a page.
+//! A browser that records errors on a page.
 
 mod devtools;
 
@@ -16,17 +16,17 @@ use serde_json::{Value, json};
 
 use devtools::Browser;
 
-/// A page is given up if it does not get there within this time.
+/// The timeout of waiting for a condition on a page.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A page in a browser without a window.
+/// A page in a headless browser.
 pub(crate) struct Page {
     browser: RefCell<Browser>,
     width: u32,
 }
 
 impl Page {
-    /// Opens an address; none if this machine has no browser and need not have one.
+    /// Opens an address; `None` if this machine has no browser and none is required.
     pub(crate) fn open(address: &str, width: u32) -> Option<Self> {
         let Some(program) = chromium() else {
             assert!(
@@ -40,7 +40,7 @@ impl Page {
         for domain in ["Page", "Runtime", "Log", "Network", "DOM"] {
             page.call(&format!("{domain}.enable"), &json!({}));
         }
-        // As if its window were the one in front.
+        // As if its window had the focus.
         page.call("Emulation.setFocusEmulationEnabled", &json!({ "enabled": true }));
         page.size(900);
         page.call("Page.navigate", &json!({ "url": address }));
@@ -55,7 +55,7 @@ impl Page {
         self.browser.borrow_mut().call(method, parameters)
     }
 
-    /// Makes the page this high, and as narrow as no window can be.
+    /// Sets the height of the page, and its width, which may be narrower than any window.
     fn size(&self, height: u32) {
         let (width, mobile) = (self.width, self.width < 500);
         let size =
@@ -63,7 +63,7 @@ impl Page {
         self.call("Emulation.setDeviceMetricsOverride", &size);
     }
 
-    /// What a piece of JavaScript says; promises are awaited.
+    /// The value of a JavaScript expression; promises are awaited.
     pub(crate) fn evaluate(&self, script: &str) -> Value {
         let said = self.try_evaluate(script).expect("there is a page");
         assert!(said["exceptionDetails"].is_null(), "{script}: {}", said["exceptionDetails"]);
@@ -75,10 +75,10 @@ impl Page {
         self.browser.borrow_mut().try_call("Runtime.evaluate", &script)
     }
 
-    /// Waits until a piece of JavaScript is true.
+    /// Waits until a JavaScript expression is true.
     pub(crate) fn wait_for(&self, script: &str) {
         let begun = Instant::now();
-        // There is nobody to ask while one page gives way to the next.
+        // Evaluation fails while one page is replaced by the next.
         while !self.try_evaluate(script).is_ok_and(|said| said["result"]["value"] == true) {
             let complaints = self.complaints();
             assert!(begun.elapsed() < PATIENCE, "{script} never came true: {complaints:?}");
@@ -86,7 +86,7 @@ impl Page {
         }
     }
 
-    /// Puts a file into a field of a form.
+    /// Chooses a file in an input field.
     pub(crate) fn choose_file(&self, field: &str, path: &str) {
         let root = self.call("DOM.getDocument", &json!({}))["root"]["nodeId"].clone();
         let field = self.call("DOM.querySelector", &json!({ "nodeId": root, "selector": field }));
@@ -94,7 +94,7 @@ impl Page {
         self.call("DOM.setFileInputFiles", &files);
     }
 
-    /// Presses a key where the focus is.
+    /// Presses a key in the focused element.
     pub(crate) fn press(&self, key: &str) {
         let (code, text) = match key {
             "Tab" => (9, ""),
@@ -129,15 +129,15 @@ impl Page {
         }
     }
 
-    /// What came of these methods' events so far.
+    /// The results of `of` for the events so far.
     fn noted(&self, of: impl Fn(&str, &Value) -> Option<String>) -> Vec<String> {
-        // Whatever happened before is heard before this is answered.
+        // Earlier events arrive before the answer to this.
         let _ = self.try_evaluate("0");
         let browser = self.browser.borrow();
         browser.events.iter().filter_map(|(method, said)| of(method, said)).collect()
     }
 
-    /// What the console and the log hold of errors and warnings.
+    /// The errors and warnings in the console and the log.
     pub(crate) fn complaints(&self) -> Vec<String> {
         self.noted(|method, said| match method {
             "Runtime.exceptionThrown" => Some(said["exceptionDetails"].to_string()),
@@ -147,7 +147,7 @@ impl Page {
         })
     }
 
-    /// Every address that the page asked for.
+    /// Every address that the page requested.
     pub(crate) fn requests(&self) -> Vec<String> {
         self.noted(|method, said| {
             let asked = (method == "Network.requestWillBeSent").then_some(said)?;
@@ -155,13 +155,13 @@ impl Page {
         })
     }
 
-    /// Keeps what the whole page looks like.
+    /// Saves a screenshot of the whole page.
     pub(crate) fn screenshot(&self, name: &str) -> PathBuf {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("screenshots");
         fs::create_dir_all(&folder).expect("a folder for screenshots");
         let height = self.evaluate("document.documentElement.scrollHeight").as_f64();
         self.size(height.map_or(900, |height| height as u32));
-        // Figures that come into view are drawn now.
+        // Figures that have come into view are drawn now.
         std::thread::sleep(Duration::from_millis(500));
         let image = self.call("Page.captureScreenshot", &json!({ "format": "png" }));
         let image = STANDARD.decode(image["data"].as_str().expect("an image")).expect("base64");
@@ -179,7 +179,7 @@ fn chromium() -> Option<PathBuf> {
         .find(|program| program.is_file())
 }
 
-/// The program with a page of its own; it ends with this.
+/// The program with its own page, which ends when this is dropped.
 pub(crate) struct Server {
     program: Child,
     page: String,
@@ -187,7 +187,7 @@ pub(crate) struct Server {
 }
 
 impl Server {
-    /// Starts `host-sim` with arguments that make it serve a page, and reads where.
+    /// Starts `host-sim` with arguments that make it serve a page, and reads the address.
     pub(crate) fn start(arguments: &[&str]) -> Self {
         let mut program = Command::new(env!("CARGO_BIN_EXE_host-sim"))
             .args(arguments)
@@ -195,7 +195,7 @@ impl Server {
             .stderr(Stdio::piped())
             .spawn()
             .expect("the program runs");
-        // `live` keeps its standard output for its report.
+        // `live` reserves its standard output for its report.
         let output: Box<dyn Read> = match arguments[0] {
             "live" => Box::new(program.stderr.take().expect("a pipe")),
             _ => Box::new(program.stdout.take().expect("a pipe")),
@@ -211,17 +211,17 @@ impl Server {
         Self { program, page: page.expect("it was found"), datagrams }
     }
 
-    /// Where the page is, with the key to it.
+    /// The address of the page, including its key.
     pub(crate) fn address(&self) -> &str {
         &self.page
     }
 
-    /// Where the page is once the key was handed over.
+    /// The address of the page after the key has been handed over.
     pub(crate) fn place(&self) -> &str {
         place(&self.page)
     }
 
-    /// Where it listens.
+    /// The address on which it receives datagrams.
     pub(crate) fn datagrams(&self) -> SocketAddr {
         self.datagrams.expect("it listens")
     }
@@ -234,7 +234,7 @@ fn place(address: &str) -> &str {
 
 impl Drop for Server {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // The program may have ended by itself.
         let _ = self.program.kill();
         let _ = self.program.wait();
     }

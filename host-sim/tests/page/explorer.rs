@@ -1,4 +1,4 @@
-//! The explorer: what is opened, turned and refused.
+//! Tests of the explorer: opening, changing and refusing.
 
 use std::fmt::Write as _;
 
@@ -43,7 +43,7 @@ fn a_slider_moves_and_the_path_changes() {
     page.wait_for(&format!("{DRAWN} && document.body.dataset.answers > 1"));
     let tenth = path(&page);
     assert_ne!(adaptive, tenth);
-    // With the keyboard alone: an arrow moves the slider that has the focus.
+    // By keyboard alone: an arrow key moves the focused slider.
     page.evaluate("document.getElementById('control-threshold').focus()");
     let answers = page.evaluate("Number(document.body.dataset.answers)");
     for _ in 0..5 {
@@ -53,7 +53,7 @@ fn a_slider_moves_and_the_path_changes() {
         "document.body.dataset.answers > {answers} && !document.body.dataset.asking"
     ));
     assert_ne!(path(&page), tenth);
-    // A button of the legend takes its series away, and a key moves into the figure.
+    // A button of the legend hides its series, and a key moves into the figure.
     let first = "document.querySelector('#figure-path .legend button')";
     page.evaluate(&format!("{first}.focus()"));
     let before = page.evaluate(&format!("{first}.getAttribute('aria-pressed')"));
@@ -87,7 +87,7 @@ fn a_razors_log_is_opened_damage_told_and_a_broken_one_refused_with_a_sentence()
     page.wait_for(DRAWN);
     own_files(&page);
     open(&good);
-    // The log holds no truth: nothing is said of errors.
+    // The log contains no truth, so no errors are reported.
     page.wait_for(&format!(
         "{DRAWN} && !document.getElementById('facts').textContent.includes('RMSE')"
     ));
@@ -103,7 +103,7 @@ fn a_razors_log_is_opened_damage_told_and_a_broken_one_refused_with_a_sentence()
     let sentence = page.evaluate("document.getElementById('alert').textContent");
     let begin = "broken.txt: expected at most ";
     assert!(sentence.as_str().expect("text").starts_with(begin), "{sentence}");
-    // The same sentence as on the command line, but for where the file lies.
+    // The same sentence as on the command line, except for the path of the file.
     let output = host_sim(&["replay", "pedestrian", "--log", &broken]);
     let told = program::text(&output.stderr);
     let told = told.trim_end();
@@ -111,7 +111,8 @@ fn a_razors_log_is_opened_damage_told_and_a_broken_one_refused_with_a_sentence()
     assert_eq!(sentence, told);
 }
 
-/// Three anchors do not tell how high the tag beside them is: the page shows where that is said, and goes on when it is.
+/// Three anchors do not determine the height of the tag beside them: the page points to the control for it, and
+/// continues when it is set.
 #[test]
 fn what_a_refusal_asks_for_is_said_on_the_page() {
     let desk = Desk::new();
@@ -141,7 +142,7 @@ fn what_a_refusal_asks_for_is_said_on_the_page() {
         assert!(marks.as_str().expect("text").split(',').any(|mark| mark == "height"), "{marks}");
         assert_eq!(page.evaluate("document.getElementById('facts').children.length"), 0);
         page.screenshot(&format!("explorer-asked-{width}.png"));
-        // Taken as the slider stands, then as it is moved.
+        // First with the slider's initial value, then after moving it.
         page.evaluate("document.querySelector('[data-setting=height] .take').click()");
         page.wait_for(DRAWN);
         assert_eq!(page.evaluate("document.getElementById('alert').textContent"), "");
@@ -151,13 +152,13 @@ fn what_a_refusal_asks_for_is_said_on_the_page() {
         assert!(first.as_str().expect("text").contains("--height"), "{first}");
         page.evaluate(&turn("height", "0.5"));
         page.wait_for(&format!("{command}.includes('--height 0.5')"));
-        // Refusals are no faults of the page, though the browser notes their status.
+        // Refusals are not errors of the page, although the browser logs their status.
         let complaints = page.complaints();
         assert!(complaints.iter().all(|it| it.contains("422")), "{complaints:?}");
     }
 }
 
-/// A path is no thread in an empty field, whatever its shape.
+/// A path is never a thread in an empty field, whatever its shape.
 #[test]
 fn a_path_fills_its_place_at_any_shape() {
     let server = Server::start(&["serve", "--port", "0"]);

@@ -1,4 +1,4 @@
-//! Files that are dropped on the explorer: whose they are is found.
+//! Tests of files dropped on the explorer, whose system is recognised.
 
 use std::fmt::Write as _;
 use std::io::{Cursor, Write as _};
@@ -12,7 +12,7 @@ use zip::write::SimpleFileOptions;
 use crate::browser::{Page, Server};
 use crate::{DRAWN, SETTLED, assert_quiet, explore, text_of, walk};
 
-/// Drops files.
+/// Drops files on the page.
 fn drop_files(page: &Page, files: &[(&str, &[u8])]) {
     let files: Vec<_> =
         files.iter().map(|(name, bytes)| (name, BASE64_STANDARD.encode(bytes))).collect();
@@ -24,7 +24,7 @@ fn drop_files(page: &Page, files: &[(&str, &[u8])]) {
     ));
 }
 
-/// Waits until a system's recording is drawn whose log the command names so.
+/// Waits until a recording of a system is drawn whose command names the log `file`.
 fn wait_for(page: &Page, system: &str, file: &str) {
     page.wait_for(&format!(
         "{DRAWN} && {SETTLED} && document.getElementById('command').textContent.includes('replay {system}') && \
@@ -32,7 +32,7 @@ fn wait_for(page: &Page, system: &str, file: &str) {
     ));
 }
 
-/// Anchors, ranges and truth of a tag that stands.
+/// Anchors, ranges and truth of a stationary tag.
 fn room() -> [(&'static str, String); 3] {
     let places = [[0.0, 0.0], [8.0, 0.0], [8.0, 6.0], [0.0, 6.0]];
     let (mut anchors, mut ranges) = ("anchor,x,y,z\n".to_owned(), "t,anchor,range\n".to_owned());
@@ -46,7 +46,7 @@ fn room() -> [(&'static str, String); 3] {
         }
     }
     let truth = "t,x,y\n0,3,2\n20,3,2\n".to_owned();
-    // Nothing is told by the names.
+    // The file names do not tell the contents.
     [("one.csv", truth), ("three.csv", ranges), ("two.csv", anchors)]
 }
 
@@ -92,7 +92,7 @@ fn what_is_lacking_is_asked_for_and_what_nobody_reads_is_told() {
     drop_files(&page, &[(ranges.0, ranges.1.as_bytes())]);
     wait_for(&page, "robot", "three.csv");
     assert_eq!(page.evaluate(alert), "");
-    // A walk is a walk, whatever was open.
+    // A walk is recognised whatever was open before.
     let walk = razor_text(&walk());
     drop_files(&page, &[("somewhere.txt", walk.as_bytes())]);
     wait_for(&page, "pedestrian", "somewhere.txt");
@@ -110,6 +110,6 @@ fn what_is_lacking_is_asked_for_and_what_nobody_reads_is_told() {
     wait_for(&page, "uav", "a.csv");
     drop_files(&page, &[("b.csv", search.as_bytes())]);
     wait_for(&page, "drone", "b.csv");
-    // A browser notes each refusal, and nothing else.
+    // The browser logs each refusal, and nothing else.
     assert!(page.complaints().iter().all(|complaint| complaint.contains("422")));
 }

@@ -1,23 +1,23 @@
-//! The explorer without a mouse.
+//! Tests of the explorer without a mouse.
 
 use std::collections::BTreeSet;
 
 use crate::browser::{Page, Server};
 use crate::{DRAWN, SETTLED, WIDTHS, assert_quiet, explore, systems, text_of};
 
-/// Everything that can be used, numbered.
+/// A script that numbers all focusable elements.
 const NUMBERED: &str = "(() => { const all = [...document.querySelectorAll('button, input, select, summary, a[href], [tabindex=\"0\"]')] \
     .filter(it => !it.disabled && it.checkVisibility()); all.forEach((it, k) => { it.dataset.stop = k; }); \
     return all.map(it => `${it.tagName} ${it.id} ${it.ariaLabel ?? it.textContent.slice(0, 40)}`).join('\\n'); })()";
 
-/// The number of what has the focus, and its outline. From the last to the first the browser itself has the focus for a
-/// moment, in which nothing is outlined yet.
+/// A script that returns the number of the focused element, and its outline. Between the last element and the first the
+/// browser itself has the focus for a moment, in which nothing is outlined yet.
 const FOCUSED: &str = "(async () => { \
     const now = () => { const it = document.activeElement; return [it.dataset.stop ?? -1, getComputedStyle(it).outlineStyle]; }; \
     for (let k = 0; k < 100 && now()[1] === 'none' && now()[0] >= 0; k++) await new Promise(it => setTimeout(it, 20)); \
     return now().join(); })()";
 
-/// Presses Tab until the focus is there.
+/// Presses Tab until an element has the focus.
 fn tab_to(page: &Page, selector: &str) {
     let is_there = format!("document.activeElement.matches('{selector}')");
     for _ in 0..500 {
@@ -29,7 +29,7 @@ fn tab_to(page: &Page, selector: &str) {
     panic!("Tab never leads to {selector}");
 }
 
-/// Presses a key and waits until what came of it is shown.
+/// Presses a key and waits until its effect is shown.
 fn press_for(page: &Page, key: &str, changed: &str) {
     let before = page.evaluate(changed);
     page.press(key);
@@ -47,7 +47,7 @@ fn everything_is_reached_by_tab_and_shows_that_it_is() {
         let all: Vec<_> = all.as_str().expect("text").lines().collect();
         assert!(all.len() > 30, "{system}: {all:?}");
         let mut reached = BTreeSet::new();
-        // Twice round would be a trap.
+        // More than two rounds would be a keyboard trap.
         for _ in 0..2 * all.len() {
             page.press("Tab");
             let stop = page.evaluate(FOCUSED);
@@ -85,7 +85,7 @@ fn a_session_needs_no_mouse() {
     let hash = page.evaluate("location.hash");
     let hash = hash.as_str().expect("text");
     assert!(hash.contains("window=") && hash.contains("cursor="), "{hash}");
-    // A series, and the figure as a picture.
+    // A series, and a figure as a picture.
     tab_to(&page, ".legend button[aria-pressed=true]");
     press_for(&page, "Enter", "document.querySelectorAll('.legend [aria-pressed=false]').length");
     page.evaluate(
@@ -109,10 +109,10 @@ fn a_session_needs_no_mouse() {
     tab_to(&page, "#table-strides tr");
     page.press("ArrowDown");
     press_for(&page, "Enter", "document.querySelector('.clock .told').textContent");
-    // Where Tab has been, it comes back to.
+    // Tab returns to the row that it left.
     tab_to(&page, ".clock .play");
     tab_to(&page, "#table-strides tr:nth-child(2)");
-    // Files of one's own, and another system.
+    // Own files, and another system.
     tab_to(&page, "#bundled");
     page.press("End");
     for field in ["#any-files", "#any-folder", "#file-log", "#upload"] {

@@ -1,4 +1,4 @@
-//! The page of a stream: as it comes, as it was, and as other settings see it.
+//! Tests of the page of a stream: live, at an earlier moment, and with other settings.
 
 use kestirim_telemetry::Imu;
 
@@ -48,7 +48,7 @@ fn a_stream_is_shown_while_it_comes() {
     let received = || fact("frames received").as_str().and_then(|it| it.parse::<usize>().ok());
     let all = received();
     assert_eq!(all, Some(walk.len()));
-    // Half of it is what there was halfway.
+    // Half of the stream gives the state halfway.
     page.evaluate("{ const a = document.getElementById('after'); a.value = a.max / 2; a.dispatchEvent(new Event('input')); }");
     page.wait_for(&pressed("go on"));
     page.wait_for("document.getElementById('of').textContent === '50 %'");
@@ -61,7 +61,7 @@ fn a_stream_is_shown_while_it_comes() {
     page.wait_for("document.getElementById('of').textContent === '100 %'");
     assert_eq!(received(), all);
     assert_ne!(fact("position"), before);
-    // Other settings see it otherwise, from its beginning.
+    // Other settings are applied from the beginning of the stream.
     let now = fact("position");
     page.evaluate(
         "{ const e = document.getElementById('control-tracker'); \
@@ -71,7 +71,7 @@ fn a_stream_is_shown_while_it_comes() {
         "[...document.querySelectorAll('#facts dd')].every(d => d.textContent !== {now})"
     ));
     assert_eq!(received(), all);
-    // Nothing is kept of a stream that could be undone.
+    // A stream has no undo.
     assert_eq!(page.evaluate("document.getElementById('undo').checkVisibility()"), false);
     assert_quiet(&page, server.place());
 }

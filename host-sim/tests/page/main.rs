@@ -1,6 +1,6 @@
-//! The explorer, the report and the page of a stream in a real browser: Debian's `chromium`, without a window.
+//! Tests of the explorer, the report and the page of a stream in a real browser: Debian's `chromium`, headless.
 //!
-//! Screenshots are kept in `target/tmp/screenshots`. Without a browser the tests say SKIPPED, unless
+//! Screenshots are kept in `target/tmp/screenshots`. Without a browser the tests report SKIPPED, unless
 //! `KESTIRIM_REQUIRE_BROWSER` is set.
 
 #[path = "../browser/mod.rs"]
@@ -26,17 +26,17 @@ use host_sim::systems::pedestrian::simulate::scenario::Scenario;
 use host_sim::systems::pedestrian::simulate::sensor::measure;
 use serde_json::Value;
 
-/// A desk's screen and a telephone's, px.
+/// The widths of a desktop screen and of a phone (px).
 const WIDTHS: [u32; 2] = [1280, 390];
-/// Everything has been drawn.
+/// The condition that everything has been drawn.
 const DRAWN: &str = "document.querySelectorAll('figure').length > 0 && \
     [...document.querySelectorAll('figure')].every(f => f.querySelector('.main-svg')) && \
     document.getElementById('facts').children.length > 0";
 
 const SYSTEMS: [&str; 5] = ["pedestrian", "robot", "drone", "uav", "gnss"];
 
-/// The systems of which everything on their pages is used: all, and in the short form (`KESTIRIM_SHORT=1`) one with a map and one
-/// with figures over time, since the pages are one program.
+/// The systems whose pages are tested completely: all, and in the short form (`KESTIRIM_SHORT=1`) one with a map and
+/// one with figures over time, as the pages share their code.
 fn systems() -> &'static [&'static str] {
     if std::env::var("KESTIRIM_SHORT").is_ok_and(|it| it == "1") {
         &["robot", "uav"]
@@ -45,7 +45,7 @@ fn systems() -> &'static [&'static str] {
     }
 }
 
-/// Chooses an option or moves a slider, as a person does.
+/// A script that chooses an option or moves a slider as a user does.
 fn turn(control: &str, value: &str) -> String {
     format!(
         "{{ const c = document.getElementById('control-{control}'); c.value = '{value}'; \
@@ -53,7 +53,7 @@ fn turn(control: &str, value: &str) -> String {
     )
 }
 
-/// A walk through the paper's flat, as the Razor measures it.
+/// A walk through the paper's flat, as measured by the Razor.
 fn walk() -> Vec<Sample> {
     let mut rng = stream(4, 0);
     let ideal = Scenario::draw(&mut rng).ideal_imu(100.0);
@@ -79,7 +79,7 @@ fn assert_quiet(page: &Page, address: &str) {
     assert_eq!(page.evaluate(wide), true, "the page is wider than its window");
 }
 
-/// Presses every button of every figure, of which none offers to send the figure away.
+/// Presses every button of every figure, after checking that none offers to send the figure away.
 fn press_buttons(page: &Page) {
     let buttons = "[...document.querySelectorAll('.modebar-btn')]";
     let titles = page.evaluate(&format!("{buttons}.map(b => b.dataset.title).join()"));
@@ -88,26 +88,26 @@ fn press_buttons(page: &Page) {
     page.evaluate(&format!("{buttons}.forEach(b => b.click())"));
 }
 
-/// Everything that was asked for is answered.
+/// The condition that every request has been answered.
 const SETTLED: &str = "document.body.dataset.answers > 0 && !document.body.dataset.asking";
-/// Plots over time.
+/// An expression for the plots over time.
 const OVER_TIME: &str =
     "[...document.querySelectorAll('.plot')].filter(p => p.parentNode.querySelector('.cursor'))";
 
-/// Text of an element.
+/// The text of an element.
 fn text_of(page: &Page, id: &str) -> String {
     let text = page.evaluate(&format!("document.getElementById('{id}').textContent"));
     text.as_str().expect("text").to_owned()
 }
 
-/// The explorer with a system, everything drawn; none without a browser.
+/// Opens the explorer with a system and waits until everything is drawn; `None` without a browser.
 fn explore(server: &Server, system: &str, width: u32) -> Option<Page> {
     let page = Page::open(&format!("{}#{system}", server.address()), width)?;
     page.wait_for(&format!("{DRAWN} && {SETTLED}"));
     Some(page)
 }
 
-/// Chooses to open files of one's own.
+/// Selects the opening of own files.
 fn own_files(page: &Page) {
     page.evaluate(
         "{ const b = document.getElementById('bundled'); b.value = ''; b.dispatchEvent(new Event('input')); }",

@@ -1,4 +1,4 @@
-//! The report.
+//! Tests of the report.
 
 use crate::browser::Page;
 use crate::program::{self, Desk, host_sim};

@@ -1,4 +1,4 @@
-//! A session that can be kept: its address, undo, comparison and downloads.
+//! Tests of a session that can be kept: its address, undo, comparison and downloads.
 
 use std::fs;
 
@@ -8,11 +8,11 @@ use crate::browser::{Page, Server};
 use crate::program::Desk;
 use crate::{DRAWN, SETTLED, assert_quiet, explore, own_files, systems, text_of, walk};
 
-/// The control that a test turns: the first slider that has an effect.
+/// An expression for the control that a test moves: the first slider that has an effect.
 const SLIDER: &str =
     "[...document.querySelectorAll('#controls input[type=range]')].find(r => !r.disabled)";
 
-/// Turns it by so many steps, and waits until all is drawn.
+/// Moves the slider by a number of steps, and waits until everything is drawn.
 fn turn_by(page: &Page, steps: i32) {
     let command = text_of(page, "command");
     page.evaluate(&format!(
@@ -29,7 +29,7 @@ fn press(page: &Page, id: &str) {
     page.evaluate(&format!("document.getElementById('{id}').click()"));
 }
 
-/// What a person sees of a session: command, window, cursor, facts.
+/// The visible state of a session: command, window, cursor, facts.
 fn picture(page: &Page) -> [String; 4] {
     let window = "[document.querySelector('.clock input').min, document.querySelector('.clock input').max].join()";
     let cursor = "document.querySelector('.clock .told').textContent";
@@ -38,7 +38,7 @@ fn picture(page: &Page) -> [String; 4] {
     [text_of(page, "command"), window, cursor, text_of(page, "facts")]
 }
 
-/// The address once it is written down.
+/// The address once it has been updated.
 fn address(page: &Page) -> String {
     std::thread::sleep(std::time::Duration::from_millis(400));
     page.evaluate("location.hash").as_str().expect("text").to_owned()
@@ -70,7 +70,7 @@ fn an_address_shows_the_same_picture_and_undo_goes_back_for_every_system() {
         pasted.wait_for(&format!("{DRAWN} && {SETTLED}"));
         assert_eq!(picture(&pasted), kept, "{system}: pasted");
         assert_quiet(&pasted, server.place());
-        // From there on there is nothing to undo but what is done there.
+        // An opened address has nothing to undo before the first change.
         assert_eq!(page.evaluate("document.getElementById('undo').disabled"), true);
         turn_by(&page, 2);
         let turned = text_of(&page, "command");
@@ -114,7 +114,7 @@ fn two_settings_are_compared_over_each_other_and_as_a_difference_for_every_syste
             .expect("a browser");
         pasted.wait_for(&format!("{DRAWN} && {SETTLED}"));
         assert_eq!(pasted.evaluate(rows), page.evaluate(rows), "{system}: pasted");
-        // What was B is A, and the settings of A are set.
+        // Swapping makes B the new A and sets the settings of the old A.
         let b = text_of(&page, "command");
         press(&page, "swap");
         page.wait_for(SETTLED);
@@ -136,7 +136,7 @@ fn every_download_of_every_system_is_what_it_is_called() {
     let server = Server::start(&["serve", "--port", "0"]);
     for &system in systems() {
         let Some(page) = explore(&server, system, 1280) else { return };
-        // What the buttons give is looked at instead of being saved.
+        // The contents of downloads are intercepted instead of saved.
         page.evaluate(
             "window.given = {}; let last; URL.createObjectURL = blob => { last = blob; return '#'; }; \
              HTMLAnchorElement.prototype.click = function () { given[this.download] = last.text(); }; \
@@ -213,7 +213,7 @@ fn uploaded_files_are_found_again_by_their_address_and_a_failed_upload_clears_wh
         "performance.getEntriesByType('navigation')[0].type === 'reload' && {DRAWN} && {SETTLED}"
     ));
     assert_eq!(picture(&page), kept);
-    // The same bytes have the same address, whatever lies between.
+    // The same bytes have the same address, whatever was open in between.
     choose(&broken);
     page.wait_for("document.getElementById('alert').textContent !== ''");
     let left = "document.getElementById('facts').children.length + document.querySelectorAll('figure').length";
@@ -222,7 +222,7 @@ fn uploaded_files_are_found_again_by_their_address_and_a_failed_upload_clears_wh
     page.wait_for(&format!("{DRAWN} && {SETTLED}"));
     assert_eq!(picture(&page)[0], kept[0]);
     assert!(address(&page).contains(hash));
-    // Of another program nothing is known.
+    // Another instance of the program does not know the upload.
     let other = Server::start(&["serve", "--port", "0"]);
     let pasted = Page::open(&format!("{}{here}", other.address()), 1280).expect("a browser");
     pasted.wait_for("document.getElementById('alert').textContent.includes('open them again')");

@@ -1,4 +1,4 @@
-//! How long a page takes.
+//! Measurements of the page's speed.
 
 use std::time::Instant;
 
@@ -11,7 +11,7 @@ use crate::browser::{Page, Server};
 use crate::program::Desk;
 use crate::{DRAWN, own_files, turn};
 
-/// How long a slider takes from its movement until everything is drawn, on a log of two minutes at 200 Hz.
+/// The time from the movement of a slider until everything is drawn, for a log of two minutes at 200 Hz.
 #[test]
 #[ignore = "a measurement: cargo test --release -p host-sim --test page -- --ignored --nocapture"]
 fn a_slider_answers_at_once() {
@@ -49,7 +49,7 @@ fn a_slider_answers_at_once() {
     println!("cursor to picture: median {} ms, worst {} ms", cursors[10], cursors[19]);
 }
 
-/// How long twenty repetitions of something with a number `i` take until they are laid out, ms, in their order.
+/// The times (ms), sorted, that twenty repetitions of an action with a number `i` take until they are laid out.
 fn repeated(page: &Page, action: &str) -> Vec<f64> {
     let times = page.evaluate(&format!(
         "(async () => {{ const times = []; \
@@ -60,7 +60,7 @@ fn repeated(page: &Page, action: &str) -> Vec<f64> {
     serde_json::from_str(times.as_str().expect("text")).expect("numbers")
 }
 
-/// Two hours at 400 Hz: the same walk again and again.
+/// Two hours at 400 Hz, by repeating one walk.
 fn two_hours() -> Vec<Sample> {
     let mut rng = stream(4, 0);
     let ideal = Scenario::draw(&mut rng).ideal_imu(400.0);
@@ -73,7 +73,7 @@ fn two_hours() -> Vec<Sample> {
     (0..laps).flat_map(again).collect()
 }
 
-/// What takes how long on a log of two hours at 400 Hz.
+/// The times of several actions for a log of two hours at 400 Hz.
 #[test]
 #[ignore = "a measurement: cargo test --release -p host-sim --test page -- --ignored --nocapture"]
 fn two_hours_are_looked_at() {
@@ -94,7 +94,7 @@ fn two_hours_are_looked_at() {
         || page.evaluate("Number(document.body.dataset.milliseconds)").as_f64().expect("ms");
     let (mut sliders, mut zooms) = (Vec::new(), Vec::new());
     for step in 0..5_u32 {
-        // Sliders are moved while all of it is seen.
+        // The sliders are moved while the whole time is shown.
         page.evaluate("document.querySelector('.clock .whole').click()");
         page.wait_for("!document.body.dataset.asking");
         page.evaluate(&turn("contact-height", &format!("{:.2}", 0.05 + 0.01 * f64::from(step))));

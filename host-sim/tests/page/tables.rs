@@ -1,4 +1,4 @@
-//! Tables beside the figures.
+//! Tests of the tables beside the figures.
 
 use crate::browser::{Page, Server};
 use crate::{DRAWN, SETTLED, WIDTHS, assert_quiet, explore, text_of, turn};
@@ -22,7 +22,7 @@ fn the_row_at_the_cursor_is_marked_and_a_row_moves_the_cursor() {
         let slider = "document.querySelector('.clock input')";
         let time = |row: u32| number(&page, &format!("{ROWS}[{row}].dataset.time"));
         let assert_at = |row: u32| {
-            // A bar has a thousand steps.
+            // The bar has a thousand steps.
             let step = number(&page, &format!("{slider}.step"));
             let off = number(&page, &format!("{slider}.value")) - time(row);
             assert!(off.abs() <= step, "row {row}: {off} s off");
@@ -40,7 +40,7 @@ fn the_row_at_the_cursor_is_marked_and_a_row_moves_the_cursor() {
         page.press("ArrowDown");
         page.press("Enter");
         assert_at(1);
-        // Compared, those of B; of other settings, other rows.
+        // A comparison shows the rows of B; other settings give other rows.
         page.evaluate("document.getElementById('keep').click()");
         let title = "document.querySelector('#table-strides summary').textContent";
         page.wait_for(&format!("{SETTLED} && {title} === 'Strides, of B'"));

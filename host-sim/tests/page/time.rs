@@ -1,9 +1,9 @@
-//! One time for all figures of a page: a window and a cursor.
+//! Tests of the common time of a page's figures: a window and a cursor.
 
 use crate::browser::{Page, Server};
 use crate::{DRAWN, OVER_TIME, SETTLED, WIDTHS, assert_quiet, explore, systems};
 
-/// Ranges of the axes of all plots over time, in seconds of the bar.
+/// The ranges of the axes of all plots over time, in seconds of the bar.
 fn ranges(page: &Page) -> Vec<[f64; 2]> {
     let script = format!(
         "JSON.stringify({OVER_TIME}.map(p => p._fullLayout.xaxis.range.map(v => \
@@ -13,7 +13,7 @@ fn ranges(page: &Page) -> Vec<[f64; 2]> {
     serde_json::from_str(text.as_str().expect("text")).expect("ranges")
 }
 
-/// How many marks of a kind are seen.
+/// The number of visible marks of a kind.
 fn seen(page: &Page, class: &str) -> Option<u64> {
     page.evaluate(&format!("document.querySelectorAll('.{class}:not([hidden])').length")).as_u64()
 }
@@ -52,7 +52,7 @@ fn one_window_and_one_cursor_hold_for_all_figures_of_every_system() {
             }
             let values = "[...document.querySelectorAll('.legend .value')].filter(o => o.textContent).length";
             assert!(page.evaluate(values).as_u64() > Some(lines), "{system}: values at the cursor");
-            // A window of one figure is that of all, and asked for points once.
+            // The window of one figure is that of all, and points are requested once.
             let before = ranges(&page);
             assert!(before.iter().all(|range| *range == before[0]), "{system}: {before:?}");
             let [from, until] = [low + 0.4 * (high - low), low + 0.6 * (high - low)];
@@ -101,7 +101,7 @@ fn mouse_and_keys_move_the_cursor_in_a_figure() {
     let places = [
         point("mouse", "pointermove", 0.25),
         point("touch", "pointerdown", 0.5),
-        // A finger that moves zooms.
+        // A moving finger zooms.
         point("touch", "pointermove", 0.75),
     ];
     assert!(places[0] != "" && places[0] != places[1], "{places:?}");
@@ -117,7 +117,7 @@ fn the_ellipse_of_a_place_follows_the_cursor() {
     for width in WIDTHS {
         let Some(page) = explore(&server, "robot", width) else { return };
         for id in ["plan", "dilution"] {
-            // Where its middle is from the dot, and how large it is, px.
+            // The distance of its centre from the dot, and its size (px).
             let at = |share: f64| {
                 let script = format!(
                     "{{ const s = document.querySelector('.clock input'); \

@@ -1,6 +1,6 @@
-//! Runs the program and looks at what it says.
+//! Runs the program and examines its output.
 
-// Each test needs a part of it.
+// Each test uses a part of it.
 #![allow(dead_code)]
 
 use std::collections::BTreeMap;
@@ -15,7 +15,7 @@ pub(crate) fn host_sim<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_host-sim")).args(arguments).output().expect("the program runs")
 }
 
-/// Whether a program is missing, which is said; it may be unless the environment says `required`.
+/// Whether a program is missing, which is reported; fails if the environment variable `required` is set.
 pub(crate) fn is_missing(program: &str, required: &str) -> bool {
     let is_missing = Command::new(program).arg("--version").output().is_err();
     if is_missing {
@@ -41,7 +41,7 @@ pub(crate) fn refusal(arguments: &[&str]) -> String {
     assert_eq!(output.status.code(), Some(2), "{arguments:?}: {sentence}");
     assert!(output.stdout.is_empty(), "{arguments:?}");
     assert_eq!(sentence.trim_end().lines().count(), 1, "{sentence}");
-    // A path is as long as its folder's.
+    // Paths are not counted: their length depends on the folder.
     let own = sentence
         .trim_start_matches("host-sim: ")
         .split_whitespace()
@@ -51,7 +51,7 @@ pub(crate) fn refusal(arguments: &[&str]) -> String {
     sentence.to_owned()
 }
 
-/// How many messages an MCAP file has of each topic.
+/// The number of messages on each topic of an MCAP file.
 pub(crate) fn messages(file: impl AsRef<Path>) -> BTreeMap<String, usize> {
     let bytes = fs::read(file).expect("a file");
     let mut counts = BTreeMap::new();
@@ -61,7 +61,7 @@ pub(crate) fn messages(file: impl AsRef<Path>) -> BTreeMap<String, usize> {
     counts
 }
 
-/// Header and rows of a track: its first columns as numbers, and the last, which is the health.
+/// The header and rows of a track: its first columns as numbers, and the last, which is the health.
 pub(crate) fn rows_of<const N: usize>(file: impl AsRef<Path>) -> (String, Vec<([f64; N], String)>) {
     let written = fs::read_to_string(file).expect("a track");
     let mut lines = written.lines();
@@ -76,7 +76,7 @@ pub(crate) fn rows_of<const N: usize>(file: impl AsRef<Path>) -> (String, Vec<([
     (header, rows)
 }
 
-/// A folder with files, and their paths as text.
+/// A temporary folder for files, with their paths as text.
 pub(crate) struct Desk(TempDir);
 
 impl Desk {

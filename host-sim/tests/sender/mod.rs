@@ -1,6 +1,6 @@
-//! Sends telemetry to the program, no faster than it writes it down.
+//! Sends telemetry to the program, no faster than it is recorded.
 
-// Each test needs a part of it.
+// Each test uses a part of it.
 #![allow(dead_code)]
 
 use std::fs;
@@ -11,12 +11,12 @@ use std::time::{Duration, Instant};
 
 use kestirim_telemetry::{CAPACITY, Counts, Message, Origin, Receiver, encode, encode_from};
 
-/// Bytes on the way: far less than any kernel keeps for a socket.
+/// The maximum number of bytes in flight: far less than any kernel buffers for a socket.
 const ON_THE_WAY: u64 = 32_000;
-/// Nothing here takes as long.
+/// The timeout of all waits: nothing here takes as long.
 const FOREVER: Duration = Duration::from_secs(300);
 
-/// A frame as it is sent.
+/// A frame of a message without a device number.
 pub(crate) fn frame(message: impl Into<Message>, sequence: usize) -> Vec<u8> {
     let mut buffer = [0; CAPACITY];
     encode(&message.into(), sequence as u16, &mut buffer).expect("the capacity is enough").to_vec()
@@ -46,7 +46,7 @@ pub(crate) fn decoded(bytes: &[u8]) -> (Vec<Message>, Counts) {
     (messages, receiver.counts())
 }
 
-/// Waits until something has happened.
+/// Waits until a condition holds.
 pub(crate) fn wait_for(what: &str, mut happened: impl FnMut() -> bool) {
     let begun = Instant::now();
     while !happened() {
@@ -55,12 +55,12 @@ pub(crate) fn wait_for(what: &str, mut happened: impl FnMut() -> bool) {
     }
 }
 
-/// Bytes in a recording.
+/// The length of a recording in bytes.
 pub(crate) fn length(recording: &Path) -> u64 {
     fs::metadata(recording).map_or(0, |file| file.len())
 }
 
-/// Sends datagrams, and waits whenever too much of them is not yet told to have arrived.
+/// Sends datagrams, waiting whenever too many bytes have not been confirmed as arrived.
 pub(crate) fn send<'a>(
     address: SocketAddr,
     datagrams: impl Iterator<Item = &'a [u8]>,

@@ -1,12 +1,12 @@
-//! The drone's filter on this machine, beside plain implementations of the same, timed in one run on one
+//! Benchmarks the drone's filter on this machine against plain implementations of the same filter, in one run on one
 //! thread:
 //!
 //! ```text
 //! RUSTFLAGS="-C target-cpu=x86-64-v3" cargo bench -p kestirim-tests --bench drone
 //! ```
 //!
-//! Without `RUSTFLAGS` it measures what every x86-64 can run; `cc` compiles plain C for the same processor.
-//! A number is the processor time of the fastest of many rounds.
+//! Without `RUSTFLAGS` it measures code for any x86-64; `cc` compiles plain C for the same processor. A number is the
+//! processor time of the fastest of many rounds.
 
 mod plain;
 
@@ -26,13 +26,14 @@ use kestirim_user_locator::{PublishedLocator, PublishedSettings};
 use rand_core::SeedableRng;
 use rustix::time::{ClockId, clock_gettime};
 
-/// Particles of a step.
+/// The number of particles of a step.
 const L: usize = 500;
-/// Weights to resample.
+/// The number of weights to resample.
 const WEIGHTS: usize = 100_000;
-/// Height of the drone, m.
+/// The height of the drone, m.
 const HEIGHT_M: f64 = 500.0;
-/// Shares of effective particles below which a step resamples: the thesis', and always.
+/// The shares of effective particles below which a step resamples: the thesis' threshold, and one that always
+/// resamples.
 const THRESHOLDS: [f64; 2] = [0.1, 2.0];
 
 const LAWS: [(Resampler, plain::Resample); 4] = [
@@ -42,8 +43,8 @@ const LAWS: [(Resampler, plain::Resample); 4] = [
     (Resampler::Multinomial, plain::multinomial),
 ];
 
-/// Rows of the table: what, published times and targets, µs. Rows of steps are as many as thresholds, the
-/// others as laws.
+/// The rows of the table: what is measured, published times and target times, µs. There are as many rows of steps as
+/// thresholds, and as many other rows as resampling laws.
 const ROWS: [[&str; 3]; 6] = [
     [
         "step, L = 500, with jitter",
@@ -57,7 +58,7 @@ const ROWS: [[&str; 3]; 6] = [
     ["multinomial", "C 10757, particles 1974", "1000"],
 ];
 
-/// A measurement.
+/// A measurement at one stop of the drone.
 struct Stop {
     place: [f64; 2],
     loss: f64,
@@ -92,7 +93,7 @@ fn main() {
     }
 }
 
-/// The thesis' circle round a user in the urban environment.
+/// Measurements from the thesis' circle around a user in the urban environment.
 fn circle() -> Vec<Stop> {
     let (channel, mut rng) = (EnvironmentKind::Urban.channel(), stream(1, 0));
     let stop = |place| {
@@ -151,7 +152,7 @@ fn plain_rust(stops: &[Stop]) -> Vec<f64> {
     times
 }
 
-/// Compiles plain.c and runs it.
+/// Compiles `plain.c` and runs it.
 fn plain_c(stops: &[Stop]) -> anyhow::Result<Vec<f64>> {
     let folder = tempfile::tempdir()?;
     let program = folder.path().join("plain");
@@ -172,7 +173,7 @@ fn plain_c(stops: &[Stop]) -> anyhow::Result<Vec<f64>> {
     times.split_whitespace().map(|time| Ok(time.parse()?)).collect()
 }
 
-/// Squares of uniform numbers, of sum one: most of them small, none of them large.
+/// Squares of uniform numbers, normalised to sum one: most are small, none are large.
 fn weights() -> Vec<f64> {
     let mut rng = plain::Random::new();
     let weights: Vec<f64> = (0..WEIGHTS).map(|_| rng.uniform().powi(2)).collect();
@@ -180,13 +181,13 @@ fn weights() -> Vec<f64> {
     weights.iter().map(|weight| weight / sum).collect()
 }
 
-/// A step of several laps.
+/// The time of one step, measured over several laps, s.
 fn time_of_step<M>(measurements: &[M], mut step: impl FnMut(&M)) -> f64 {
     let laps = || std::iter::repeat_n(measurements, 4).flatten();
     fastest(200, || laps().for_each(&mut step)) / laps().count() as f64
 }
 
-/// Seconds of the processor, of the fastest round.
+/// The processor time of the fastest round, s.
 fn fastest(rounds: usize, mut work: impl FnMut()) -> f64 {
     let now = || Duration::try_from(clock_gettime(ClockId::ThreadCPUTime)).unwrap_or_default();
     let round = |_| {

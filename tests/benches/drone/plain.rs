@@ -1,4 +1,4 @@
-//! The same as plain.c in plain Rust.
+//! The filter of `plain.c` in plain Rust.
 
 use std::f64::consts::{PI, TAU};
 
@@ -31,7 +31,7 @@ fn density(deviation: f64, sigma: f64) -> f64 {
     (-0.5 * z * z).exp() / (sigma * TAU.sqrt())
 }
 
-/// Eqs 2.1 and 2.7 to 2.11 in the urban environment, the drone 500 m high.
+/// Eqs 2.1 and 2.7 to 2.11 in the urban environment, with the drone 500 m high.
 fn likelihood(user: &Particle, stop: &Stop) -> f64 {
     let (dx, dy, h) = (user.x - stop.place[0], user.y - stop.place[1], 500.0);
     let elevation = (h / (dx * dx + dy * dy).sqrt()).atan().to_degrees();
@@ -100,7 +100,7 @@ pub(crate) fn stratified(weights: &[f64], ancestors: &mut [usize], rng: &mut Ran
     strata(weights, ancestors, || rng.uniform());
 }
 
-/// One draw in each n-th of the sum.
+/// Draws one sample from each n-th of the sum of the weights.
 fn strata(weights: &[f64], ancestors: &mut [usize], mut offset: impl FnMut() -> f64) {
     let count = weights.len();
     let (mut cumulative, mut index) = (weights[0], 0);

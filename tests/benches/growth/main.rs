@@ -1,5 +1,5 @@
-//! How the cost of the hot steps grows with what they are given: of each the cost of one (particle, row, epoch, measurement), over
-//! that in the smallest case. A line that stays level is linear growth. Draws the book's figures of it:
+//! Measures how the cost of the hot steps grows with the size of their input: for each, the cost per unit (particle,
+//! row, epoch, measurement) relative to the smallest case. A level line means linear growth. Draws the book's figures:
 //!
 //! ```text
 //! cargo bench -p kestirim-tests --bench growth
@@ -27,10 +27,10 @@ use kestirim_user_locator::{PublishedLocator, PublishedSettings};
 use rand_core::SeedableRng;
 use rustix::time::{ClockId, clock_gettime};
 
-/// Of a hundred thousand particles, some megabytes.
+/// The stack size, bytes: a hundred thousand particles take some megabytes.
 const STACK: usize = 1 << 28;
 
-/// Seconds by size.
+/// The processor time, s, over the size of the input.
 type Curve = Vec<(f64, f64)>;
 
 fn main() -> anyhow::Result<()> {
@@ -75,7 +75,7 @@ fn print(name: &str, curve: &Curve, unit: &str) {
     println!("{name:33} {}  ({unit})", all.join("  "));
 }
 
-/// A step of the thesis' filter that resamples, with its moments.
+/// A step of the thesis' filter with resampling and moments.
 fn particles() -> Curve {
     vec![step::<100>(), step::<1_000>(), step::<10_000>(), step::<100_000>()]
 }
@@ -103,7 +103,7 @@ fn step<const L: usize>() -> (f64, f64) {
     (L as f64, lap / f64::from(STEPS))
 }
 
-/// Rows of seven numbers.
+/// Reading rows of seven numbers.
 fn rows() -> anyhow::Result<Curve> {
     let mut curve = Vec::new();
     for rows in [1_000, 10_000, 100_000, 500_000] {
@@ -120,7 +120,7 @@ fn rows() -> anyhow::Result<Curve> {
     Ok(curve)
 }
 
-/// The default filter of precise point positioning over the first epochs of a synthetic day of GPS.
+/// Precise point positioning with the default filter over the first epochs of a synthetic day of GPS.
 fn epochs() -> Curve {
     let day = Day::new(1, 0, &Rates::NONE);
     let receiver = Receiver {
@@ -146,7 +146,7 @@ fn epochs() -> Curve {
     [90, 360, 1440, 2880].map(|epochs| (epochs as f64, fastest(7, || solve(epochs)))).into()
 }
 
-/// Seconds of the processor, of the fastest round.
+/// The processor time of the fastest round, s.
 fn fastest<T>(rounds: usize, mut work: impl FnMut() -> T) -> f64 {
     let now = || Duration::try_from(clock_gettime(ClockId::ThreadCPUTime)).unwrap_or_default();
     let round = |_| {

@@ -1,4 +1,4 @@
-//! A robust update, worst first, of codes and phases of many satellites.
+//! A robust update, worst measurement first, with codes and phases of many satellites.
 
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{Decision, Measurement, Robust};
@@ -6,22 +6,23 @@ use nalgebra::SVector;
 
 use crate::{Curve, fastest};
 
-/// Position, clock, zenith delay and an ambiguity for each of forty satellites.
+/// The number of states (position, clock, zenith delay and an ambiguity for each of forty satellites), and the largest
+/// number of measurements.
 const STATES: usize = 45;
 const MOST: usize = 80;
 
-/// By how many measurements, of which none stands out.
+/// The time over the number of measurements, none of which is an outlier.
 pub(crate) fn measurements() -> Curve {
     curve(&[10, 20, 40, MOST].map(|count| (count, count, 0)))
 }
 
-/// By how many of eighty are off by 20 deviations.
+/// The time over the number of outliers among eighty measurements, which are off by 20 standard deviations.
 pub(crate) fn outliers() -> Curve {
     curve(&[0, 1, 2, 5, 10, 15, 20].map(|count| (count, MOST, count)))
 }
 
-/// Seconds by the first of three numbers; the others are how many measurements there are and how many of them are off. All have
-/// their turn in each round, for what else the machine does to disturb all alike.
+/// The processor times, s, of cases given by their size, the number of measurements and the number of outliers. Every
+/// case is timed in each round, so that disturbances of the machine affect all alike.
 fn curve(cases: &[(usize, usize, usize)]) -> Curve {
     let epochs: Vec<_> = cases.iter().map(|&(_, count, off)| Epoch::new(count, off)).collect();
     let mut curve: Curve = cases.iter().map(|&(size, ..)| (size as f64, f64::INFINITY)).collect();
@@ -33,7 +34,7 @@ fn curve(cases: &[(usize, usize, usize)]) -> Curve {
     curve
 }
 
-/// A prediction, and rows, innovations and variances of measurements.
+/// A prediction, with the rows, innovations and variances of measurements.
 struct Epoch {
     predicted: Gaussian<f64, STATES>,
     rows: Vec<[(usize, f64); 5]>,
@@ -53,7 +54,7 @@ impl Epoch {
         });
         let numbers = (0..count).map(|index| {
             let sigma = if index % 2 == 1 { 0.1 } else { 0.3 };
-            // A shuffled order.
+            // Outliers are spread by a permutation.
             let is_off = (index * 37) % MOST < outliers;
             let off =
                 if is_off { 20.0_f64.copysign(number(index, 5.3)) } else { number(index, 1.7) };

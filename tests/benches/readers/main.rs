@@ -1,12 +1,13 @@
-//! Our readers on this machine, beside others of the same files, and a station's day from files to positions:
+//! Benchmarks our readers on this machine against others of the same files, and a station's day from files to
+//! positions:
 //!
 //! ```text
 //! cargo bench -p kestirim-tests --bench readers
 //! ```
 //!
-//! Its files are made by itself; recorded days are read, too, where they are. Peers are the `csv` crate with fast-float2,
-//! and where they are installed polars (`python3 -c 'import polars'`) and RTKLIB (`rnx2rtkp`). A number is the processor
-//! time, of all threads, of the fastest of several rounds.
+//! The benchmark makes its own files; recorded days are also read where they are available. Peers are the `csv` crate
+//! with fast-float2, and, where installed, polars (`python3 -c 'import polars'`) and RTKLIB (`rnx2rtkp`). A number is
+//! the processor time, of all threads, of the fastest of several rounds.
 
 mod peers;
 mod synthetic;
@@ -24,7 +25,7 @@ use kestirim_replay::gnss::{Pass, Paths, Recording, Shelf, follow};
 use kestirim_tests::recordings;
 use rustix::time::{ClockId, clock_gettime};
 
-/// Rounds, of which the fastest counts.
+/// The number of rounds, of which the fastest counts.
 const ROUNDS: usize = 7;
 
 fn main() -> anyhow::Result<()> {
@@ -52,12 +53,12 @@ struct Files {
     sp3: Vec<PathBuf>,
     clk: Vec<PathBuf>,
     antex: Vec<PathBuf>,
-    /// What RTKLIB wants to have beside them, if it is asked: for it all are plain, and of GPS.
+    /// The navigation file that RTKLIB additionally needs; if there is one, all files are uncompressed and only of GPS.
     nav: Option<PathBuf>,
 }
 
 impl Files {
-    /// Those of a folder; none if it is not there.
+    /// The files in a folder; `None` if it does not exist.
     fn of(folder: &Path) -> Option<Self> {
         let mut all: Vec<_> = folder.read_dir().ok()?.flatten().map(|it| it.path()).collect();
         all.sort();
@@ -79,7 +80,7 @@ impl Files {
     }
 }
 
-/// Tables of numbers.
+/// Benchmarks reading of tables of numbers.
 fn tables(folder: &Path) -> anyhow::Result<()> {
     let walk = synthetic::walk();
     let path = folder.join("walk.csv");
@@ -91,7 +92,7 @@ fn tables(folder: &Path) -> anyhow::Result<()> {
     ];
     let rows = || Table::read(&kestirim_import::Text::new(&walk)?).map(|table| table.lines.len());
     let samples = || inertial::read(&walk, &Options::default()).map(|it| it.samples.len());
-    // An error would be the quickest of all.
+    // A failing reader would be the fastest of all.
     let (found, taken) = (rows()?, samples()?);
     ensure!(found == 200_000 && taken > 0, "{found} rows, {taken} samples");
     let table = fastest(rows);
@@ -122,7 +123,7 @@ fn tables(folder: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Each file of a day by itself: unpacked, then read.
+/// Benchmarks each file of a day separately: first unpacking, then reading.
 fn gnss_files(day: &str, files: &Files) -> anyhow::Result<()> {
     let read = |what: &str, paths: &[PathBuf], parse: &dyn Fn(&[Text])| -> anyhow::Result<()> {
         let packed: Vec<_> = paths.iter().map(std::fs::read).collect::<Result<_, _>>()?;
@@ -137,7 +138,7 @@ fn gnss_files(day: &str, files: &Files) -> anyhow::Result<()> {
         }
         let time = fastest(|| parse(&texts));
         let what = format!("{day}: {what}");
-        // Of what was packed only the time can be compared.
+        // For compressed files only the time is comparable.
         if is_packed {
             println!("{what:34} {:>6} {:>7.1} ms", "", time * 1e3);
         } else {
@@ -154,7 +155,7 @@ fn gnss_files(day: &str, files: &Files) -> anyhow::Result<()> {
     read("clocks", &files.clk, &|texts| drop(black_box(Clocks::parse(texts))))
 }
 
-/// A day from files to positions.
+/// Benchmarks a day from files to positions.
 fn station_day(day: &str, files: &Files) -> anyhow::Result<()> {
     let recording = Recording::read(&files.paths())?;
     let config = Config::new(Motion::Static);
@@ -191,7 +192,7 @@ fn station_day(day: &str, files: &Files) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Prints a line; peers by their seconds.
+/// Prints a line of the table; `peers` are given by their times in s.
 fn row(what: &str, bytes: usize, ours: f64, peers: &[(&str, Option<f64>)]) {
     let megabytes = bytes as f64 / 1e6;
     let speed = |seconds: f64| megabytes / seconds;
@@ -203,7 +204,7 @@ fn row(what: &str, bytes: usize, ours: f64, peers: &[(&str, Option<f64>)]) {
     println!("{what:34} {megabytes:>6.1} {:>10.0}   {others}", speed(ours));
 }
 
-/// Seconds of the processor, of the fastest round.
+/// The processor time of the fastest round, s.
 fn fastest<T>(mut work: impl FnMut() -> T) -> f64 {
     let now = || Duration::try_from(clock_gettime(ClockId::ProcessCPUTime)).unwrap_or_default();
     let round = |_| {

@@ -1,11 +1,11 @@
-//! Others that read the same files.
+//! Other readers of the same files.
 
 use std::path::Path;
 use std::process::Command;
 
 use crate::Files;
 
-/// Columns of numbers by the `csv` crate and fast-float2: the rows.
+/// Reads columns of numbers with the `csv` crate and fast-float2; returns the number of rows.
 pub(crate) fn csv(bytes: &[u8]) -> anyhow::Result<usize> {
     let mut reader = csv::Reader::from_reader(bytes);
     let mut columns: Vec<Vec<f64>> = vec![Vec::new(); reader.byte_headers()?.len()];
@@ -18,8 +18,8 @@ pub(crate) fn csv(bytes: &[u8]) -> anyhow::Result<usize> {
     Ok(columns.first().map_or(0, Vec::len))
 }
 
-/// The digits of a table are looked at, and nothing is kept: the sum of all fields without their signs and points. No reader
-/// can be much quicker that goes from byte to byte.
+/// Scans the digits of a table without storing anything and returns the sum of all fields, ignoring signs and points.
+/// No reader that goes from byte to byte can be much faster.
 pub(crate) fn digits(bytes: &[u8]) -> u64 {
     let (mut sum, mut number) = (0_u64, 0_u64);
     for byte in bytes {
@@ -34,7 +34,7 @@ pub(crate) fn digits(bytes: &[u8]) -> u64 {
     sum
 }
 
-/// Seconds of the processor in which polars reads a table from memory, on one thread; none if it is not installed.
+/// The processor time in which polars reads a table from memory on one thread, s; `None` if it is not installed.
 pub(crate) fn polars(path: &Path) -> Option<f64> {
     const PROGRAM: &str = "import sys, time, polars
 bytes, best = open(sys.argv[1], 'rb').read(), 9.0
@@ -49,7 +49,7 @@ print(best)";
     String::from_utf8(output.stdout).ok()?.trim().parse().ok()
 }
 
-/// What makes RTKLIB compute what we do, as far as it can.
+/// Options that make RTKLIB compute what we do, as far as it can.
 const OPTIONS: &str = "pos1-posmode=ppp-static
 pos1-frequency=l1+2
 pos1-soltype=forward
@@ -63,8 +63,8 @@ pos1-navsys=1
 out-solformat=xyz
 ";
 
-/// Seconds of the processor in which RTKLIB reads a day, and in which it reads and solves it; none if it is not installed, or
-/// finds fewer positions than nine of ten.
+/// The processor times in which RTKLIB reads a day, and reads and solves it, s; `None` if it is not installed, or finds
+/// positions for less than nine in ten epochs.
 pub(crate) fn rtklib(files: &Files, nav: &Path) -> Option<[f64; 2]> {
     let folder = files.obs.parent()?;
     let (options, out) = (folder.join("rtklib.conf"), folder.join("rtklib.pos"));
@@ -82,11 +82,11 @@ pub(crate) fn rtklib(files: &Files, nav: &Path) -> Option<[f64; 2]> {
         let times: Option<Vec<_>> = (0..3).map(|_| run(more)).collect();
         times?.into_iter().reduce(f64::min)
     };
-    // Of a day beyond the files nothing is left to solve.
+    // For a day outside the files nothing is solved.
     let read = best(&["-ts", "2030/01/01", "00:00:00", "-te", "2030/01/02", "00:00:00"])?;
     let total = best(&[])?;
     let positions = std::fs::read_to_string(out).ok()?;
     let found = positions.lines().filter(|line| !line.starts_with('%')).count();
-    // Of an epoch every 30 s.
+    // There is one epoch every 30 s.
     (found * 10 > 2_880 * 9).then_some([read, total])
 }

@@ -1,4 +1,4 @@
-//! The files that are read.
+//! Synthetic files for the readers.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -10,7 +10,7 @@ use kestirim_simulate::gnss::{Day, EPOCHS, INTERVAL_S, MIDNIGHT, Rates};
 
 use crate::Files;
 
-/// A number between −1 and 1.
+/// A pseudo-random number between −1 and 1.
 fn random(state: &mut u64) -> f64 {
     *state ^= *state << 13;
     *state ^= *state >> 7;
@@ -18,7 +18,7 @@ fn random(state: &mut u64) -> f64 {
     (*state >> 11) as f64 * 2.0_f64.powi(-52) - 1.0
 }
 
-/// A sensor that lies still, a thousand seconds at 200 Hz.
+/// A log of a sensor that lies still, for a thousand seconds at 200 Hz.
 pub(crate) fn walk() -> Vec<u8> {
     let mut text = String::from("t,ax,ay,az,gx,gy,gz\n");
     let mut state = 88_172_645_463_325_252;
@@ -32,7 +32,7 @@ pub(crate) fn walk() -> Vec<u8> {
     text.into_bytes()
 }
 
-/// Ranges to four anchors.
+/// A log of ranges to four anchors.
 pub(crate) fn ranges() -> Vec<u8> {
     let mut text = String::from("t,anchor,range\n");
     let mut state = 88_172_645_463_325_252;
@@ -43,7 +43,7 @@ pub(crate) fn ranges() -> Vec<u8> {
     text.into_bytes()
 }
 
-/// A day of a station with the products of its satellites, as RINEX and SP3 have them.
+/// A station's day with the products of its satellites, in RINEX and SP3.
 pub(crate) fn day(folder: &Path) -> anyhow::Result<Files> {
     let day = Day::new(1, 0, &Rates::RECORDING);
     let file = |name: &str, text: String| {
@@ -64,7 +64,7 @@ fn header(content: &str, label: &str) -> String {
     format!("{content:<60}{label}\n")
 }
 
-/// Date and time some seconds after [`MIDNIGHT`], which begins 1 September 2019.
+/// The date and time `second` seconds after [`MIDNIGHT`], which begins 1 September 2019.
 fn date(second: f64, zeros: bool) -> String {
     let (month, day) = match (second / 86_400.0).floor() {
         ..0.0 => (8, 31),
@@ -110,10 +110,10 @@ fn observations(day: &Day) -> String {
     text
 }
 
-/// Position (ECEF, m) and clock (s) of a satellite some seconds after midnight, by the products.
+/// The position (ECEF, m) and clock (s) of a satellite `second` seconds after midnight, from the products.
 fn state(products: &Products, prn: u8, second: f64) -> Option<([f64; 3], f64)> {
     let time = MIDNIGHT.plus(second);
-    // A signal that arrives as soon as it is sent by the satellite's clock, then by GPS time.
+    // A signal that arrives at the moment of its transmission: first by the satellite's clock, then by GPS time.
     let at = |code: f64| {
         let observed =
             Observed { prn, code: [Some(code); 2], phase: [Some(0.0); 2], ..Observed::default() };
@@ -142,7 +142,7 @@ fn orbits(products: &Products) -> String {
     text + "EOF\n"
 }
 
-/// The 22 lines of SP3-c.
+/// The 22 header lines of SP3-c.
 fn orbits_header(satellites: &[u8]) -> String {
     let mut text = String::from(
         "#cP2019  9  1  0  0  0.00000000     113 MADE  IGS14 FIT HERE\n\
@@ -181,19 +181,19 @@ fn clocks(products: &Products) -> String {
     text
 }
 
-/// A number as Fortran's E19.12 has it, of 19 characters.
+/// A number in Fortran's format E19.12, 19 characters wide.
 fn exponential(number: f64) -> String {
     let text = format!("{number:.11e}");
     let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
     let exponent: i32 = exponent.parse().unwrap_or_default();
     let (sign, digits) = digits.strip_prefix('-').map_or((" ", digits), |digits| ("-", digits));
-    // The point stands before all digits.
+    // The point precedes all digits.
     let (exponent, digits) = (exponent + i32::from(number != 0.0), digits.replace('.', ""));
     let mark = if exponent < 0 { '-' } else { '+' };
     format!("{sign}0.{digits}E{mark}{:02}", exponent.abs())
 }
 
-/// Ephemerides that hold nothing: RTKLIB wants some, even where it takes precise orbits.
+/// Empty ephemerides: RTKLIB needs some, even where it uses precise orbits.
 fn navigation() -> String {
     let mut text = header("     2.11           N: GPS NAV DATA", "RINEX VERSION / TYPE")
         + &header("", "END OF HEADER");

@@ -2,7 +2,7 @@
 
 fn main() {
     println!("cargo::rustc-link-arg-bins=-Tlink.x");
-    // Sections need no page alignment on a bare machine; without it the image stays small.
+    // Sections on bare metal need no page alignment; without it the image stays small.
     println!("cargo::rustc-link-arg-bins=--nmagic");
     println!("cargo::rerun-if-changed=build.rs");
 }

@@ -1,9 +1,10 @@
-//! Puts the memory map of the target's board where the linker looks for `memory.x`, and tells the
-//! crate which board it is built for: no built-in `cfg` tells one Cortex-M from another.
+//! Puts the memory map of the target's board where the linker looks for `memory.x`, and tells the crate which board it
+//! is built for: no built-in `cfg` distinguishes one Cortex-M from another.
 
 use std::{env, fs, path::PathBuf};
 
-/// The images' crates could be logged, as an application's are; what is measured logs nothing, and has no place for the names.
+/// A linker script without log strings: the images' crates could log, as in an application, but what is measured logs
+/// nothing and has no section for the strings.
 const NO_LOG: &str = "\nSECTIONS { /DISCARD/ : { *(.defmt.*) } }\n";
 
 fn main() {

@@ -1,4 +1,4 @@
-//! Links every binary without a linker script: it is not to run, and no board would hold it.
+//! Links every binary without a linker script: it is never run, and would not fit on any board.
 
 fn main() {
     println!("cargo::rustc-link-arg-bins=--entry=main");

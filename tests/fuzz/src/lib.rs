@@ -1,8 +1,8 @@
-//! What a fuzzer's bytes say to a tracker.
+//! Derives sensor values from a fuzzer's bytes.
 
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 
-/// A number: mostly one that a sensor could say, sometimes any.
+/// A number: mostly a plausible sensor value, sometimes arbitrary.
 ///
 /// # Errors
 /// If no bytes are left.
@@ -13,7 +13,7 @@ pub fn number(bytes: &mut Unstructured<'_>, scale: f64) -> Result<f64> {
     Ok(f64::from(bytes.arbitrary::<i16>()?) / f64::from(i16::MAX) * scale)
 }
 
-/// Microseconds from the last sample to this: mostly one step, sometimes any, also back.
+/// The time from the last sample to this one, µs: mostly one step, sometimes arbitrary, also negative.
 ///
 /// # Errors
 /// If no bytes are left.

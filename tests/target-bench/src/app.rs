@@ -1,4 +1,4 @@
-//! Builds an application of `tests/firmware/apps` or `contrib`, and runs it.
+//! Builds and runs an application of `tests/firmware/apps` or `contrib`.
 
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
@@ -16,13 +16,14 @@ use crate::qemu::{ERRORS, OUTPUT, STREAM, emulate};
 use crate::target::{CORTEX_M0, CORTEX_M4F, RV32IMC, Target};
 use crate::toolchain::Apart;
 
-/// The names under which application and host meet in the emulator's working directory.
+/// The names of the files that application and host share in the emulator's working directory.
 const CARD: &str = "card.img";
 const LOG: &str = "log.bin";
 const TELEMETRY: &str = "telemetry.bin";
 const LINE: &str = "line.sock";
 
-/// The applications of each target, and which of them are built in one go: those of one board. The first are the short form.
+/// The applications of each target, in groups that are built together: those of one board. The first group is the short
+/// form.
 const APPLICATIONS: [(&Target, Packages); 4] = [
     (&CORTEX_M0, &["pedestrian-firmware", "uav-firmware"]),
     (&CORTEX_M4F, &["drone-firmware", "pedestrian-firmware", "uav-firmware"]),
@@ -38,24 +39,25 @@ pub struct App {
     image: PathBuf,
 }
 
-/// What an application left behind.
+/// The results of a run of an application.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Run {
-    /// It ended well.
+    /// Whether it ended successfully.
     pub success: bool,
-    /// What it told outside its log: why it could not go on.
+    /// Its output besides the log: the reason why it could not go on.
     pub console: String,
-    /// What it sent over the first serial port.
+    /// The bytes that it sent over the first serial port.
     pub telemetry: Vec<u8>,
-    /// Its log, as `defmt` encodes it.
+    /// Its log, in `defmt`'s encoding.
     pub log: Vec<u8>,
-    /// The SD card, if it had one.
+    /// The contents of the SD card, if it had one.
     pub card: Option<Vec<u8>>,
 }
 
 impl App {
-    /// Builds an application, with the others of its board; `None` on a machine without the tools, and for what the short form leaves
-    /// out, which is said.
+    /// Builds an application together with the others of its board.
+    ///
+    /// Prints a notice and returns `None` on a machine without the tools, and for what the short form leaves out.
     ///
     /// # Errors
     /// It is no application of this target, it does not build, or a tool is missing and
@@ -72,7 +74,7 @@ impl App {
         Ok(images.map(|images| Self { target, board: target.board, image: images.file(package) }))
     }
 
-    /// The same for an application that runs on the machine of the images, which has more memory.
+    /// Builds an application that runs on the machine of the images, which has more memory.
     ///
     /// # Errors
     /// As [`App::of`].
@@ -80,7 +82,7 @@ impl App {
         Ok(Self::of(target, package)?.map(|app| Self { board: target.machine, ..app }))
     }
 
-    /// Builds an application that has a workspace of its own, for a board that nobody emulates.
+    /// Builds an application with its own workspace, for a board that has no emulator.
     ///
     /// # Errors
     /// As [`App::of`].
@@ -90,12 +92,12 @@ impl App {
         Ok(image.map(|image| Self { target, board: target.board, image }))
     }
 
-    /// What it runs on.
+    /// The target that it was built for.
     pub fn target(&self) -> &'static Target {
         self.target
     }
 
-    /// The bytes of the image's file.
+    /// The contents of the image's file.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -111,7 +113,7 @@ impl App {
         Elf::read(&self.image)
     }
 
-    /// Runs the application, with a recording for its sensors to play and a card in its slot, until it ends.
+    /// Runs the application until it ends, with a recording for its sensors to play and a card in its slot.
     ///
     /// # Errors
     /// It does not end, or leaves no files.
@@ -153,11 +155,12 @@ impl App {
         Ok(Run { telemetry: line.received()?, ..run })
     }
 
-    /// Runs it in a directory, on a board with what `configure` adds; what it sent and a card are not looked at.
+    /// Runs the application in a directory, on a board extended by `configure`; its telemetry and card are not
+    /// collected.
     fn run_in(&self, directory: &Path, configure: impl FnOnce(&mut Command)) -> Result<Run> {
         let file = |name| directory.join(name);
-        // The emulator hands on what is written to the semihosting host's standard output; its own
-        // console gets what is written to none, which is how an application ends that panicked.
+        // The emulator forwards what the application writes to the semihosting host's standard output. Output without a
+        // file handle, with which a panicking application ends, goes to the emulator's own console.
         let log = File::create(file(LOG))?;
         let status = emulate(self.target, &self.image, directory, |qemu| {
             qemu.args(self.board).args(["-icount", "shift=0,sleep=off"]).stdout(log);
@@ -183,16 +186,16 @@ struct Line {
 }
 
 impl Line {
-    /// Waits at a socket for the emulator, sends it these bytes and keeps what comes back.
+    /// Waits at a socket for the emulator, sends these bytes to it and collects what it sends back.
     fn new(socket: PathBuf, bytes: &[u8]) -> Result<Self> {
         let (listener, bytes) = (UnixListener::bind(&socket)?, bytes.to_vec());
         let reader = thread::spawn(move || {
             let (mut stream, _) = listener.accept()?;
             let mut sender = stream.try_clone()?;
-            // An emulator that has ended takes no more: what it sent shows why.
+            // An emulator that has ended takes no more bytes; its output shows why.
             let sender = thread::spawn(move || sender.write_all(&bytes).is_ok());
             let mut received = Vec::new();
-            // One that ends with bytes unread breaks the connection; what came before counts.
+            // An emulator that ends with unread bytes breaks the connection; the bytes received before count.
             let _ = stream.read_to_end(&mut received);
             let _ = sender.join();
             Ok(received)
@@ -200,9 +203,9 @@ impl Line {
         Ok(Self { socket, reader })
     }
 
-    /// What came back until the emulator ended.
+    /// The bytes received until the emulator ended.
     fn received(self) -> Result<Vec<u8>> {
-        // An emulator that did not start never came.
+        // Releases the reader if the emulator never connected.
         let _ = UnixStream::connect(&self.socket);
         let received = self.reader.join().map_err(|_| anyhow!("the line's reader panicked"))?;
         received.context("the serial line")

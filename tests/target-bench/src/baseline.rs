@@ -1,4 +1,4 @@
-//! The costs as they were, kept in `baseline.json`: no change makes the estimators larger or slower unseen.
+//! The recorded costs, kept in `baseline.json`, so that no change makes the estimators larger or slower unnoticed.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -9,15 +9,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::row::Row;
 
-/// By how much a cost may grow before it is told.
+/// The relative growth of a cost that is accepted.
 pub const SLACK: f64 = 0.03;
 
-/// Rows, and what compiled them.
+/// The rows of the table, and the compilers that they hold for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Baseline {
-    /// Version of the compiler of each target, and whether it built `core`.
+    /// The compiler version for each target, and whether it built `core`.
     pub compilers: BTreeMap<String, String>,
-    /// The table.
+    /// The rows of the table.
     pub rows: Vec<Row>,
 }
 
@@ -26,7 +26,7 @@ fn file() -> PathBuf {
 }
 
 impl Baseline {
-    /// Reads the one that is kept.
+    /// Reads the recorded baseline.
     ///
     /// # Errors
     /// There is none, or it is not as expected.
@@ -35,7 +35,7 @@ impl Baseline {
         Ok(serde_json::from_str(&text)?)
     }
 
-    /// Keeps this one.
+    /// Records this baseline.
     ///
     /// # Errors
     /// It cannot be written.
@@ -45,8 +45,9 @@ impl Baseline {
         fs::write(file(), text).context("tests/target-bench/baseline.json")
     }
 
-    /// What of `measured` has grown by more than [`SLACK`], is new, or is gone: a sentence each. A target at an
-    /// optimisation of which nothing was measured was left out, and is not asked for; so are peers.
+    /// The rows of `measured` that grew by more than [`SLACK`], are new, or are missing: one sentence each.
+    ///
+    /// A target and optimisation without any measurements was left out, and is not missed; neither are peers.
     pub fn complaints(&self, measured: &[Row]) -> Vec<String> {
         let mut complaints = Vec::new();
         let now: BTreeMap<_, _> = measured.iter().map(|row| (row.key(), row)).collect();
@@ -73,7 +74,7 @@ impl Baseline {
     }
 }
 
-/// What must not grow, by name.
+/// The costs that must not grow, by name.
 fn costs(row: &Row) -> [(&'static str, f64); 8] {
     [
         ("instructions_mean", row.instructions_mean),

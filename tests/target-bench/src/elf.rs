@@ -1,4 +1,4 @@
-//! What the file of an image says: memory it takes, symbols it links.
+//! The memory use and the linked symbols of an image, from its file.
 
 use std::fs;
 use std::path::Path;
@@ -7,15 +7,15 @@ use anyhow::{Context, Result};
 use object::elf::{SHF_ALLOC, SHF_WRITE};
 use object::{Object, ObjectSection, ObjectSymbol, SectionFlags};
 
-/// Sections by which linker scripts reserve the rest of the RAM; they hold no variables.
+/// Sections with which linker scripts reserve the rest of the RAM; they hold no variables.
 const RESERVED: [&str; 2] = [".heap", ".stack"];
 
 /// Memory and symbols of an image.
 #[derive(Clone, Debug)]
 pub struct Elf {
-    /// Code, constants and initial values of variables.
+    /// The size of code, constants and initial values of variables, bytes.
     pub flash_bytes: u64,
-    /// Static variables.
+    /// The size of static variables, bytes.
     pub ram_bytes: u64,
     symbols: Vec<String>,
 }
@@ -43,19 +43,17 @@ impl Elf {
         Ok(elf)
     }
 
-    /// The parts of the panic machinery that are linked (names as mangled): none if nothing in the
-    /// image can panic.
+    /// The linked parts of the panic machinery (mangled names): empty if nothing in the image can panic.
     pub fn panic_symbols(&self) -> Vec<&str> {
         self.symbols_that(is_of_panics)
     }
 
-    /// The routines of double-precision arithmetic that are linked: none if nothing in the image
-    /// computes with `f64`.
+    /// The linked routines of double-precision arithmetic: empty if nothing in the image computes with `f64`.
     pub fn double_symbols(&self) -> Vec<&str> {
         self.symbols_that(is_of_doubles)
     }
 
-    /// The parts of a memory allocator that are linked: none if nothing in the image uses a heap.
+    /// The linked parts of a memory allocator: empty if nothing in the image uses a heap.
     pub fn heap_symbols(&self) -> Vec<&str> {
         self.symbols_that(is_of_heap)
     }
@@ -70,7 +68,7 @@ fn is_of_panics(name: &str) -> bool {
         || name.split_once("slice_").is_some_and(|(_, rest)| rest.contains("fail"))
 }
 
-/// `__rust_alloc` and its like, `alloc::alloc::GlobalAlloc`, or the C library's.
+/// Whether a symbol is `__rust_alloc` or similar, `alloc::alloc::GlobalAlloc`, or the C library's allocator.
 fn is_of_heap(name: &str) -> bool {
     ["__rust_", "__rg_", "__rdl_"]
         .iter()
@@ -79,8 +77,8 @@ fn is_of_heap(name: &str) -> bool {
         || ["malloc", "calloc", "realloc", "free"].contains(&name)
 }
 
-/// `__aeabi_dadd`, `__aeabi_f2d` and so on of the Arm run-time ABI, or `__adddf3`, `__truncdfsf2` …
-/// of the compilers' own.
+/// Whether a symbol is `__aeabi_dadd`, `__aeabi_f2d` and so on of the Arm run-time ABI, or `__adddf3`, `__truncdfsf2`
+/// and so on of the compilers.
 fn is_of_doubles(name: &str) -> bool {
     let Some(name) = name.strip_prefix("__") else { return false };
     match name.strip_prefix("aeabi_") {

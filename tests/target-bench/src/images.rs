@@ -1,4 +1,4 @@
-//! The images of one target and profile, built once.
+//! The images of one target and profile, which are built once.
 
 use std::collections::BTreeMap;
 use std::env;
@@ -15,29 +15,30 @@ use crate::qemu;
 use crate::target::{CORTEX_M4F, Target};
 use crate::toolchain::{Apart, Toolchain, is_installed};
 
-/// Set to 1, a missing tool is a failure instead of a reason to skip: CI cannot skip unseen.
+/// The environment variable that, if it is 1, makes a missing tool a failure instead of a reason to skip: CI must not
+/// skip unnoticed.
 const REQUIRE: &str = "KESTIRIM_REQUIRE_TARGETS";
 
-/// The target and profile of the short form, those with which estimators are measured. A target without a floating-point unit is covered by
-/// the applications for the M0.
+/// The target and profile of the short form, with which estimators are measured. Targets without a floating-point unit
+/// are covered by the applications for the M0.
 const SHORT_FORM: (&Target, Profile) = (&CORTEX_M4F, Profile::Speed);
 
-/// The packages of images with our workloads and with the peers', built in one go.
+/// The packages of images with our workloads and with the peers', which are built together.
 const WORKLOADS: Packages = &["images", "peers"];
 
-/// The same without the peers, which change with no change of ours, and bring crates that nothing else stands on.
+/// The packages without the peers, which do not depend on our changes, and need crates that nothing else uses.
 const OURS: Packages = &["images"];
 
-/// The package of the programs that call everything; apart, because it takes long and one test needs it.
+/// The package of the programs that call everything; separate, because it is slow to build and only one test needs it.
 const SURFACE: Packages = &["surface"];
 
-/// The package of the image in which estimators wake; apart, because its crates have another feature.
+/// The package of the image that restores estimators from snapshots; separate, because its crates have another feature.
 const SNAPSHOTS: Packages = &["snapshots"];
 
-/// Packages that one call of cargo builds together.
+/// Packages that are built together by one call of cargo.
 pub(crate) type Packages = &'static [&'static str];
 
-/// What the compiler optimises for.
+/// The goal of the compiler's optimisation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Profile {
     /// Few instructions: opt-level 3.
@@ -47,10 +48,10 @@ pub enum Profile {
 }
 
 impl Profile {
-    /// Both.
+    /// Both profiles.
     pub const ALL: [Self; 2] = [Self::Speed, Self::Size];
 
-    /// The optimisation level as tables name it.
+    /// The optimisation level under its name in tables.
     pub fn opt(self) -> &'static str {
         match self {
             Self::Speed => "3",
@@ -69,22 +70,22 @@ impl Profile {
 /// The images of one target and profile.
 #[derive(Clone, Debug)]
 pub struct Images {
-    /// What they run on.
+    /// The target on which they run.
     pub target: &'static Target,
-    /// How they are optimised.
+    /// The optimisation with which they were built.
     pub profile: Profile,
-    /// What compiled them: counts of different compilers do not compare.
+    /// The compiler: counts from different compilers are not comparable.
     pub compiler: String,
     packages: Packages,
     directory: PathBuf,
 }
 
 impl Images {
-    /// Builds the images, or finds them built: a second call in this process costs nothing, one in
-    /// another process as much as cargo needs to see that nothing changed.
+    /// Builds the images, or finds them built: a second call in this process costs nothing; one in another process
+    /// takes as long as cargo needs to see that nothing changed.
     ///
-    /// `None` on a machine without the tools, and for what the short form leaves out (`KESTIRIM_SHORT=1`);
-    /// both are said once on the standard error stream.
+    /// `None` on a machine without the tools, and for what the short form leaves out (`KESTIRIM_SHORT=1`); both are
+    /// reported once on the standard error stream.
     ///
     /// # Errors
     /// The images do not build, or a tool is missing and `KESTIRIM_REQUIRE_TARGETS` is 1.
@@ -93,7 +94,7 @@ impl Images {
         Self::of_form(packages, target, profile)
     }
 
-    /// The same with the peers' images: nothing in the short form.
+    /// Builds the images including the peers', as [`Images::of`] does; `None` in the short form.
     ///
     /// # Errors
     /// As [`Images::of`].
@@ -104,7 +105,7 @@ impl Images {
         Self::of(target, profile)
     }
 
-    /// The same for the programs that call everything the crates offer: to be looked at, not to be run.
+    /// Builds the programs that call everything the crates offer; they are inspected, not run.
     ///
     /// # Errors
     /// As [`Images::of`].
@@ -112,7 +113,7 @@ impl Images {
         Self::of_form(SURFACE, target, profile)
     }
 
-    /// The same for the image in which estimators wake that slept on the host.
+    /// Builds the image that restores estimators from snapshots taken on the host.
     ///
     /// # Errors
     /// As [`Images::of`].
@@ -134,7 +135,7 @@ impl Images {
         Self::of_packages(packages, target, profile)
     }
 
-    /// The same as [`Images::of`] for who cannot do without.
+    /// Builds the images for a caller that cannot do without them: nothing is skipped, unlike with [`Images::of`].
     ///
     /// # Errors
     /// The images do not build, or a tool is missing.
@@ -150,7 +151,7 @@ impl Images {
         type Key = (Packages, &'static str, Profile);
         type Built = OnceLock<Result<Option<Images>, String>>;
         static BUILT: Mutex<BTreeMap<Key, Arc<Built>>> = Mutex::new(BTreeMap::new());
-        // Whoever comes second waits for these images, and for no others.
+        // A second caller waits for these images only, not for others.
         let key = (packages, target.triple, profile);
         let built =
             BUILT.lock().unwrap_or_else(PoisonError::into_inner).entry(key).or_default().clone();
@@ -176,11 +177,11 @@ impl Images {
         self.packages == WORKLOADS
     }
 
-    /// Runs an image, with a stream of samples (see [`crate::streams::Encode`]) for it to read, until it ends.
+    /// Runs an image until it ends, with a stream of samples (see [`crate::streams::Encode`]) for it to read.
     ///
     /// # Errors
-    /// There is no such image, it tells a failure (a panic, a fault, a step that could not be
-    /// measured), or it does not end.
+    /// There is no such image, it reports a failure (a panic, a fault, a step that could not be measured), or it does
+    /// not end.
     pub fn run(&self, image: &str, stream: &[u8]) -> Result<Output> {
         qemu::run(self.target, &self.file(image), stream)
     }
@@ -198,7 +199,7 @@ impl Images {
     }
 }
 
-/// A toolchain for the target, or what is missing.
+/// A toolchain for the target, or a sentence on what is missing.
 fn toolchain(target: &'static Target) -> Result<Toolchain, String> {
     if is_installed(target.qemu) {
         Toolchain::find(target)
@@ -207,8 +208,8 @@ fn toolchain(target: &'static Target) -> Result<Toolchain, String> {
     }
 }
 
-/// Builds an application that is a workspace of its own, for which nobody needs an emulator, and answers with
-/// the directory it is in; `None` on a machine without the tools, which is said.
+/// Builds an application with its own workspace, for which no emulator is needed, and returns its directory; prints a
+/// notice and returns `None` on a machine without the tools.
 pub(crate) fn build_apart(
     target: &'static Target,
     package: Apart,
@@ -223,14 +224,14 @@ pub(crate) fn build_apart(
     }
 }
 
-/// Says that the short form leaves something out.
+/// Reports that the short form leaves something out.
 pub(crate) fn left_out<T>(what: &str) -> Result<Option<T>> {
     // Not `eprintln!`, which the test runner swallows when the test passes.
     writeln!(io::stderr(), "SKIPPED: {what}: {SHORT}=1")?;
     Ok(None)
 }
 
-/// Says that there are no tools; an error where there must be.
+/// Reports that the tools are missing; an error where they are required.
 fn skip<T>(target: &Target, why: &str) -> Result<Option<T>> {
     if env::var(REQUIRE).is_ok_and(|value| value == "1") {
         bail!("{REQUIRE}=1, but {why}");

@@ -1,5 +1,5 @@
-//! What the estimators cost on bare metal: builds the images of `tests/firmware`, runs them under QEMU,
-//! and makes rows of a table of what they tell.
+//! Measures the costs of the estimators on bare metal: builds the images of `tests/firmware`, runs them under QEMU, and
+//! turns their output into rows of a table.
 //!
 //! ```no_run
 //! use target_bench::{CORTEX_M0, Images, Profile, Row};

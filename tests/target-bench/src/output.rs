@@ -1,42 +1,42 @@
-//! What an image told: lines of `key=value`.
+//! The output of an image: lines of `key=value`.
 
 use anyhow::{Context, Result};
 
-/// Everything an image told, in its order.
+/// The entire output of an image, in order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Output {
     lines: Vec<(String, String)>,
 }
 
-/// Where a tracker believed to be.
+/// A position estimate of a tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
-    /// Microseconds since the start of the stream.
+    /// The time since the start of the stream, µs.
     pub time_us: i64,
-    /// Metres, told to the micrometre.
+    /// The position, m, with a resolution of a micrometre.
     pub metres: [f64; 3],
 }
 
-/// Instructions of the steps of one class.
+/// The number of instructions of the steps of one class.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// How many steps there were.
+    /// The number of steps.
     pub steps: u64,
-    /// Instructions of the shortest.
+    /// The instructions of the shortest step.
     pub min: u64,
-    /// Instructions of the longest.
+    /// The instructions of the longest step.
     pub max: u64,
-    /// Instructions of all together.
+    /// The instructions of all steps together.
     pub total: u64,
 }
 
 impl Cost {
-    /// Instructions of a step on average.
+    /// The mean number of instructions of a step.
     pub fn mean(&self) -> f64 {
         self.total as f64 / self.steps as f64
     }
 
-    /// The cost of the steps of two classes together.
+    /// Combines the costs of two classes of steps.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
@@ -49,7 +49,7 @@ impl Cost {
 }
 
 impl Output {
-    /// Takes lines of `key=value` apart.
+    /// Parses lines of `key=value`.
     pub(crate) fn parse(told: &str) -> Result<Self> {
         let pair = |line: &str| {
             let (key, value) =
@@ -59,27 +59,26 @@ impl Output {
         Ok(Self { lines: told.lines().map(pair).collect::<Result<_>>()? })
     }
 
-    /// The value of a key that was told once.
+    /// The value of a key that occurs once.
     ///
     /// # Errors
-    /// The key was not told.
+    /// The key is missing.
     pub fn text(&self, key: &str) -> Result<&str> {
         self.all(key).next().with_context(|| format!("the image did not tell {key}"))
     }
 
-    /// The numbers of a key that was told once.
+    /// The numbers of a key that occurs once.
     ///
     /// # Errors
-    /// The key was not told, or not with `N` numbers.
+    /// The key is missing, or does not have `N` numbers.
     pub fn numbers<const N: usize>(&self, key: &str) -> Result<[i64; N]> {
         numbers(self.text(key)?)
     }
 
-    /// The cost of the steps of one class, if there were any; `meter` is the name that the meter
-    /// reported under.
+    /// The cost of the steps of one class, if there were any; `meter` is the name under which the meter reported it.
     ///
     /// # Errors
-    /// The cost was not told as four counts.
+    /// The cost does not consist of four counts.
     pub fn cost(&self, meter: &str, class: &str) -> Result<Option<Cost>> {
         let Some(value) = self.all(&format!("{meter}.{class}")).next() else {
             return Ok(None);
@@ -88,18 +87,18 @@ impl Output {
         Ok(Some(Cost { steps, min, max, total }))
     }
 
-    /// The numbers of every line of a key.
+    /// The numbers in every line of a key.
     ///
     /// # Errors
-    /// The key was told, but not with `N` numbers.
+    /// A line of the key does not have `N` numbers.
     pub fn rows<const N: usize>(&self, key: &str) -> Result<Vec<[i64; N]>> {
         self.all(key).map(numbers).collect()
     }
 
-    /// The positions that a replaying image told.
+    /// The positions that a replaying image printed.
     ///
     /// # Errors
-    /// A position was not told as four numbers.
+    /// A position does not consist of four numbers.
     pub fn positions(&self) -> Result<Vec<Position>> {
         let position = |value| {
             let [time_us, metres @ ..] = numbers::<4>(value)?;

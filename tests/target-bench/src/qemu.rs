@@ -1,4 +1,4 @@
-//! Runs images and applications.
+//! Runs images and applications under QEMU.
 
 use std::fs::{self, File};
 use std::path::Path;
@@ -11,15 +11,15 @@ use wait_timeout::ChildExt;
 use crate::output::Output;
 use crate::target::{ICOUNT, Target};
 
-/// What runs longer hangs.
+/// The run time after which an image is considered to hang.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// The names under which image and host meet in the emulator's working directory.
+/// The names of the files that image and host share in the emulator's working directory.
 pub(crate) const STREAM: &str = "stream.bin";
 pub(crate) const OUTPUT: &str = "output.txt";
 pub(crate) const ERRORS: &str = "errors.txt";
 
-/// Runs an image in this directory until it ends, on the machine that `configure` asks for; `None` if it hangs.
+/// Runs an image in this directory until it ends, on the machine that `configure` selects; `None` if it hangs.
 pub(crate) fn emulate(
     target: &Target,
     image: &Path,

@@ -8,50 +8,50 @@ use serde::{Deserialize, Serialize};
 use crate::images::Images;
 use crate::output::{Cost, Output};
 
-/// The classes of steps; an image tells those that occurred.
+/// The classes of steps; an image prints those that occurred.
 const CLASSES: [&str; 4] = ["predict", "update", "rejected", "start"];
 
-/// What a workload costs on a target.
+/// The costs of a workload on a target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// The workload.
+    /// The name of the workload.
     pub name: String,
-    /// The full triple.
+    /// The full target triple.
     pub target: String,
     /// The workload's number type: `f32`, `q12.20` …
     pub scalar: String,
     /// The optimisation level, `3` or `s`.
     pub opt: String,
-    /// Instructions a step on average, of all classes together.
+    /// The mean number of instructions of a step, over all classes.
     pub instructions_mean: f64,
-    /// Instructions of the shortest step.
+    /// The instructions of the shortest step.
     pub instructions_min: u64,
-    /// Instructions of the longest step.
+    /// The instructions of the longest step.
     pub instructions_max: u64,
-    /// Code and constants over the empty image.
+    /// The size of code and constants in excess of the empty image, bytes.
     pub flash_bytes: i64,
-    /// Static variables.
+    /// The size of static variables, bytes.
     pub ram_bytes: u64,
-    /// The estimator itself, with what it was told of sensors and noise.
+    /// The size of the estimator itself, including its configuration of sensors and noise, bytes.
     pub object_bytes: u64,
-    /// Peak stack of a step.
+    /// The peak stack use of a step, bytes.
     pub stack_bytes: u64,
-    /// How many parts of the panic machinery are linked.
+    /// The number of linked parts of the panic machinery.
     pub panic_symbols: usize,
-    /// How many double-precision routines are linked.
+    /// The number of linked double-precision routines.
     pub double_symbols: usize,
 }
 
 impl Row {
-    /// Makes a row of an image and what it told.
+    /// Makes a row from an image and its output.
     ///
     /// # Errors
-    /// The image took no step, or did not tell what belongs in a row.
+    /// The image took no step, or its output lacks what belongs in a row.
     pub fn of(images: &Images, image: &str, output: &Output) -> Result<Self> {
         Self::of_meter(images, image, output, "step")
     }
 
-    /// The same for an image with several meters.
+    /// Makes a row from one meter of an image with several.
     ///
     /// # Errors
     /// As [`Row::of`].
@@ -84,17 +84,17 @@ impl Row {
         })
     }
 
-    /// What tells a row from the others.
+    /// The fields that identify a row.
     pub fn key(&self) -> [&str; 4] {
         [&self.name, &self.scalar, &self.target, &self.opt]
     }
 
-    /// Whether it is of another crate's filter.
+    /// Whether the row measures another crate's filter.
     pub fn is_peer(&self) -> bool {
         is_peer(&self.name)
     }
 
-    /// How much the steps differ: (max − min)/mean.
+    /// The relative spread of the steps: (max − min)/mean.
     pub fn jitter(&self) -> f64 {
         (self.instructions_max - self.instructions_min) as f64 / self.instructions_mean
     }

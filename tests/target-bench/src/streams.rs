@@ -1,5 +1,5 @@
-//! The recorded streams that images read: made anew, the same every time.
-//! `tests/firmware/images/src/stream.rs` is their other end.
+//! The input streams of the images: generated anew, identical every time. `tests/firmware/images/src/stream.rs` reads
+//! them.
 
 mod common;
 mod flight;
@@ -13,7 +13,7 @@ pub use inertial::{Sample, walk};
 pub use path_loss::{Records, circle};
 pub use ranges::{PLACES, Ranges, ellipse};
 
-/// A record begins with the time since the one before, µs; everything is little-endian.
+/// A record of a stream: the time since the record before, µs, and words, all little-endian.
 fn record(elapsed_us: u32, words: impl IntoIterator<Item = [u8; 4]>) -> impl Iterator<Item = u8> {
     elapsed_us.to_le_bytes().into_iter().chain(words.into_iter().flatten())
 }
@@ -25,6 +25,6 @@ fn words<const N: usize>(numbers: &[f32; N]) -> [[u8; 4]; N] {
 
 /// A stream as an image reads it.
 pub trait Encode {
-    /// The bytes.
+    /// The bytes of the stream.
     fn encode(&self) -> Vec<u8>;
 }

@@ -1,11 +1,11 @@
-//! The table for people.
+//! The human-readable table.
 
 use comfy_table::CellAlignment;
 use host_sim::output::table;
 
 use crate::row::Row;
 
-/// The rows, workload by workload.
+/// Formats the rows, workload by workload.
 pub fn of(rows: &[Row]) -> String {
     let mut table = table();
     table.set_header([

@@ -1,20 +1,20 @@
 //! The table of targets.
 
-/// A bare-metal target and the machine that QEMU plays it on.
+/// A bare-metal target and the machine that QEMU emulates for it.
 #[derive(Debug)]
 pub struct Target {
-    /// The full triple.
+    /// The full target triple.
     pub triple: &'static str,
-    /// The emulator's program.
+    /// The program of the emulator.
     pub(crate) qemu: &'static str,
-    /// The emulator's arguments that choose the machine.
+    /// The emulator's arguments that select the machine.
     pub(crate) machine: &'static [&'static str],
-    /// The same for applications, which need serial ports.
+    /// The emulator's arguments that select the machine for applications, which need serial ports.
     pub(crate) board: &'static [&'static str],
 }
 
-/// Every instruction takes 2⁸ ns of virtual time: the images count instructions by a clock. The images
-/// hold the same shift (and why it is 8) in `support/src/counter.rs`.
+/// Every instruction takes 2⁸ ns of virtual time, because the images count instructions by a clock.
+/// `support/src/counter.rs` holds the same shift for the images, and the reason why it is 8.
 pub(crate) const ICOUNT: &str = "shift=8,sleep=off";
 
 /// BBC micro:bit: 16 MHz, 256 KiB of flash, 16 KiB of RAM.
@@ -41,5 +41,5 @@ pub static RV32IMC: Target = Target {
     board: &["-machine", "virt", "-bios", "none"],
 };
 
-/// All of them.
+/// All targets.
 pub static TARGETS: [&Target; 3] = [&CORTEX_M0, &CORTEX_M4F, &RV32IMC];

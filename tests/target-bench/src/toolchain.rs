@@ -1,9 +1,8 @@
 //! Finds a Rust toolchain that can build for a target, and builds with it.
 //!
-//! Two kinds will do: one with the target installed (`rustup target add …`), or one with the sources
-//! of the standard library, from which `core` is built (`rustup component add rust-src`, or Debian's
-//! packages as in `.ci/install-target-tools`). A linker must be there, too: rustup brings
-//! `rust-lld`, Debian `ld.lld`.
+//! There are two suitable kinds: one with the target installed (`rustup target add …`), or one with the sources of the
+//! standard library, from which `core` is built (`rustup component add rust-src`, or Debian's packages as in
+//! `.ci/install-target-tools`). A linker is needed, too: rustup brings `rust-lld`, Debian `ld.lld`.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -13,8 +12,8 @@ use anyhow::{Context, Result, ensure};
 
 use crate::target::Target;
 
-/// What of our own environment a build may see. Anything else, above all the variables that cargo
-/// and rustup set for this very process, would make the images depend on how the tests were started.
+/// The environment variables that a build inherits. All others, above all those that cargo and rustup set for this very
+/// process, would make the images depend on how the tests were started.
 const ENVIRONMENT: [&str; 8] = [
     "PATH",
     "HOME",
@@ -26,12 +25,12 @@ const ENVIRONMENT: [&str; 8] = [
     "SSL_CERT_DIR",
 ];
 
-/// A package that is a workspace of its own.
+/// A package with its own workspace.
 #[derive(Clone, Copy, Debug)]
 pub struct Apart {
-    /// The folder that its folder is in, from that of the repository.
+    /// The parent of the package's folder, relative to the repository.
     pub folder: &'static str,
-    /// Its name, and that of its folder.
+    /// The name of the package and of its folder.
     pub name: &'static str,
 }
 
@@ -45,8 +44,8 @@ pub(crate) struct Toolchain {
 }
 
 impl Toolchain {
-    /// The first fitting toolchain: the one that runs these tests, or the system's. Otherwise a
-    /// sentence that says what is missing.
+    /// The first suitable toolchain: the one that runs these tests, or the system's. Otherwise a sentence on what is
+    /// missing.
     pub(crate) fn find(target: &'static Target) -> Result<Self, String> {
         let own = own_sysroot();
         own.into_iter().chain([PathBuf::from("/usr")]).find_map(|sysroot| Self::at(sysroot, target)).ok_or_else(|| {
@@ -77,7 +76,8 @@ impl Toolchain {
         })
     }
 
-    /// What compiles: counts of two compilers, or with another optimisation of `core`, do not compare.
+    /// The version of the compiler: counts from two compilers, or with another optimisation of `core`, are not
+    /// comparable.
     pub(crate) fn version(&self) -> Result<String> {
         let answer = Command::new(self.sysroot.join("bin/rustc")).arg("--version").output()?;
         let version = String::from_utf8(answer.stdout)?;
@@ -85,12 +85,12 @@ impl Toolchain {
         Ok(format!("{}, {core}", version.trim_end()))
     }
 
-    /// Builds the images of these packages in one go and answers with the directory they are in.
+    /// Builds the images of these packages together and returns their directory.
     pub(crate) fn build(&self, packages: &[&str], profile: &str) -> Result<PathBuf> {
         self.build_in(&workspace(), packages, profile)
     }
 
-    /// Builds an application that is a workspace of its own.
+    /// Builds an application with its own workspace.
     pub(crate) fn build_apart(&self, package: Apart, profile: &str) -> Result<PathBuf> {
         let folder = workspace().join("../..").join(package.folder).join(package.name);
         self.build_in(&folder, &[package.name], profile)
@@ -133,13 +133,13 @@ pub(crate) fn is_installed(program: &str) -> bool {
     env::split_paths(&path).any(|directory| directory.join(program).is_file())
 }
 
-/// The toolchain that `rustc` in the search path stands for.
+/// The toolchain of the `rustc` in the search path.
 fn own_sysroot() -> Option<PathBuf> {
     let answer = Command::new("rustc").args(["--print", "sysroot"]).output().ok()?;
     Some(PathBuf::from(String::from_utf8(answer.stdout).ok()?.trim_end()))
 }
 
-/// Whether a toolchain brings the linker that rustc calls for bare-metal targets.
+/// Whether a toolchain includes the linker that rustc calls for bare-metal targets.
 fn has_rust_lld(rustlib: &Path) -> bool {
     let hosts = rustlib.read_dir().into_iter().flatten().flatten();
     hosts.map(|host| host.path().join("bin/rust-lld")).any(|linker| linker.is_file())
@@ -150,7 +150,7 @@ fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../firmware")
 }
 
-/// Where the images are built: beside what this process was built with, which cargo marks with a tag.
+/// The directory in which the images are built: beside that of this process, which cargo marks with a tag.
 fn target_directory() -> PathBuf {
     let program = env::current_exe().unwrap_or_default();
     program

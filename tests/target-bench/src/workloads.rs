@@ -1,4 +1,4 @@
-//! What is measured: every estimator's step, and the peers' on the common scenario.
+//! The measured workloads: every estimator's step, and the peers' on the common scenario.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -44,12 +44,13 @@ const CIRCLE: [&str; 2] = ["locator-f32", "locator-fixed"];
 const FLIGHT: [&str; 2] = ["observer4-f32", "observer4-fixed"];
 const FAST_FLIGHT: [&str; 2] = ["observer4-f32-1khz", "observer4-fixed-1khz"];
 
-/// The meters of the image `ppp` that make a row.
+/// The meters of the image `ppp` that become rows.
 const PPP_METERS: [&str; 2] = ["default clean", "default outliers"];
 
 /// Runs every workload whose image's name begins with `only` on one target at one optimisation.
 ///
-/// `ppp` needs more stack than a Cortex-M0 of 16 KiB has and is left out there, and the peers where they were not built.
+/// `ppp` needs more stack than a Cortex-M0 with 16 KiB has and is left out there, as are the peers where they were not
+/// built.
 ///
 /// # Errors
 /// A stream cannot be made, or an image failed.

@@ -1,5 +1,5 @@
-//! Arithmetic on emulated boards gives the host's bits: sums, differences, products, quotients, roots, comparisons and
-//! conversions of `f32`, by whatever routines the images link.
+//! Arithmetic on emulated boards equals the host's bit for bit: sums, differences, products, quotients, roots,
+//! comparisons and conversions of `f32`, by whatever routines the images link.
 
 use std::thread;
 
@@ -12,7 +12,7 @@ mod pairs;
 
 const OPERATIONS: [Operation; 7] = operations(|a, _| a.sqrt());
 
-/// What the image tells of these operations (by their places among [`OPERATIONS`]), and what it should.
+/// Compares the image's results of these operations (by their indices in [`OPERATIONS`]) with the expected ones.
 fn compare(images: &Images, which: &[u32], seed: u32, count: u32) -> Result<()> {
     let record = |&operation| [0, operation, seed, count].map(u32::to_le_bytes).concat();
     let stream: Vec<u8> = which.iter().flat_map(record).collect();
@@ -51,7 +51,7 @@ fn rv32imc() -> Result<()> {
     edges_and_some_at_random(&RV32IMC)
 }
 
-/// `cargo test --release -p kestirim-tests --test all arithmetic_on_target:: -- --ignored`
+/// Run with `cargo test --release -p kestirim-tests --test all arithmetic_on_target:: -- --ignored`.
 #[test]
 #[ignore = "takes a quarter of an hour"]
 fn a_thousand_million_sums_and_products_on_a_cortex_m0() -> Result<()> {

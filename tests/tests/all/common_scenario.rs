@@ -1,5 +1,5 @@
-//! The common scenario by which filters are compared: a tag walks an ellipse among four anchors and is
-//! tracked with position and velocity from four ranges every 0.1 s.
+//! The common scenario on which filters are compared: a tag moves on an ellipse among four anchors, and its position
+//! and velocity are tracked from four ranges every 0.1 s.
 
 use anyhow::Result;
 use host_sim::random::{normal, stream};
@@ -7,7 +7,7 @@ use kestirim_scalar::{Q8_24, Q12_20, Q16_16, Scalar};
 use kestirim_tests::common_scenario::Ekf;
 use target_bench::streams::{ANCHORS, Common};
 
-/// How far the positions are from the reference at most, m.
+/// The largest distance between the positions and the reference, m.
 fn apart<T: Scalar>(ranges: &[[f64; 4]], reference: &[[f64; 4]]) -> f64 {
     let mut filter = Ekf::<T>::new(0.1);
     let distance = |(ranges, theirs): (&[f64; 4], &[f64; 4])| {
@@ -37,7 +37,7 @@ fn the_reference_is_met() -> Result<()> {
     Ok(())
 }
 
-/// Root mean square error of the position over so many steps, m.
+/// The root mean square error of the position over `steps` steps, m.
 fn rmse<T: Scalar>(sigma: f64, steps: u32) -> f64 {
     let mut rng = stream(7, 0);
     let mut filter = Ekf::<T>::new(sigma);
@@ -65,7 +65,7 @@ fn numbers_lose_little_over_a_hundred_thousand_steps() {
         assert!(wide < 0.005, "σ = {sigma} m: Q12.20 loses {wide}");
         assert!(single < 1e-4, "σ = {sigma} m: f32 loses {single}");
         assert!(fine < 0.0005, "σ = {sigma} m: Q8.24 loses {fine}");
-        // Its step of 15 µm is coarse beside a hundredth of a metre.
+        // The resolution of Q16.16, 15 µm, is coarse relative to a hundredth of a metre.
         assert!(coarse < 0.08, "σ = {sigma} m: Q16.16 loses {coarse}");
     }
 }

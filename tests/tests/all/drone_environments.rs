@@ -1,7 +1,7 @@
-//! An environment that the levels contradict is told, and one that they do not contradict is not.
+//! An environment that the levels contradict is reported, and one that they do not contradict is not.
 //!
-//! Recorded flights stand beside the repository in `../shared/data/drone`. Where they are absent that test says SKIPPED and passes;
-//! with `KESTIRIM_REQUIRE_DATA=1` it fails instead.
+//! Recorded flights are in `../shared/data/drone`, beside the repository. Where they are absent that test prints
+//! SKIPPED and passes; with `KESTIRIM_REQUIRE_DATA=1` it fails instead.
 
 use host_sim::system::{AnySystem, Files, HealthState, Settings, Source, Wanted};
 use host_sim::systems::drone::Drone;
@@ -20,7 +20,7 @@ const ENVIRONMENTS: [(&str, EnvironmentKind); 4] = [
     ("high-rise", EnvironmentKind::HighRise),
 ];
 
-/// A flight over an environment, heard as the thesis has it; the user is at the origin.
+/// A flight over an environment, with levels by the thesis' model; the user is at the origin.
 fn flight(environment: EnvironmentKind, count: u32, random: &mut Xoshiro256PlusPlus) -> Vec<Stop> {
     let channel = environment.channel::<f64>();
     let stop = |at: u32| {
@@ -62,13 +62,14 @@ fn none_of_a_thousand_flights_contradicts_its_own_environment() {
     }
 }
 
-/// The last estimate of a flight of which nothing but its path losses is known.
+/// The last estimate of a flight, from its path losses alone.
 fn found(stops: &[Stop], environment: EnvironmentKind) -> Estimate {
     let search = Search::new(stops, None, &[], 1, false).expect("surroundings");
     search.find(Some(environment), Quantity::PathLoss).pop().expect("a place")
 }
 
-/// The thesis' shadowing is a tenth of a decibel below the drone, and no radio's: a filter that believes it is sure of a wrong place.
+/// The thesis' shadowing is a tenth of a decibel below the drone, less than any radio's: a filter that assumes it
+/// becomes certain of a wrong position.
 #[test]
 fn with_more_shadowing_than_the_environments_a_place_is_less_sure_and_not_wrong() {
     for (round, (_, environment)) in ENVIRONMENTS.into_iter().take(2).enumerate() {
@@ -121,7 +122,7 @@ fn collars_in_the_open_contradict_every_environment() {
     let Some(folder) = folder_of("drone") else { return };
     for flight in [419, 435] {
         for collar in 0..3 {
-            // In the short form one environment a collar, all among them.
+            // The short form tests one environment for each collar, so that all environments occur.
             let some = collar + usize::from(flight == 435);
             let environments =
                 if is_short() { &ENVIRONMENTS[some..=some] } else { &ENVIRONMENTS[..] };

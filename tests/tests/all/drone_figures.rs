@@ -1,4 +1,4 @@
-//! The book's figures of the drone, which are some of the report's.
+//! The book's figures of the drone, a selection from the report.
 //!
 //! `cargo test --release -p kestirim-tests --test all drone_figures:: -- --ignored`
 

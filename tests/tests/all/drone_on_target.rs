@@ -14,7 +14,8 @@ use target_bench::{
     CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Target, is_short,
 };
 
-/// Bit for bit the same arithmetic; the numbers are told with the 24 bits of an `f32`, in micrometres (m).
+/// The largest difference, m: the arithmetic is bit for bit the same, and the numbers are printed with the 24 bits of
+/// an `f32`, in micrometres.
 const SAME: f64 = 0.5e-6;
 
 const WAVELENGTH: f64 = 0.15;
@@ -23,7 +24,7 @@ fn channel<T: Scalar>() -> Channel<T> {
     Channel::new(&Environment::urban(), T::from_f64(WAVELENGTH)).expect("a channel")
 }
 
-/// Mean and spread of the cloud after each step, as the image computes them.
+/// The mean and spread of the cloud after each step, as the image computes them.
 fn estimates<T: Scalar, const L: usize>(records: &Records) -> Vec<[f32; 3]> {
     let region = Region::new([T::ZERO; 2], [T::from_f64(2000.0); 2]).expect("a city");
     let mut rng = Xoshiro128PlusPlus::seed_from_u64(1);
@@ -40,7 +41,7 @@ fn estimates<T: Scalar, const L: usize>(records: &Records) -> Vec<[f32; 3]> {
     records.iter().map(step).collect()
 }
 
-/// Runs an image and compares what it tells after each step with the host.
+/// Runs an image and compares its output after each step with the host.
 fn agree(images: &Images, image: &str, stream: &[u8], host: &[[f32; 3]]) -> Result<Output> {
     let output = images.run(image, stream)?;
     let row = Row::of(images, image, &output)?;
@@ -50,7 +51,7 @@ fn agree(images: &Images, image: &str, stream: &[u8], host: &[[f32; 3]]) -> Resu
     let mut apart = 0_f64;
     for (told, host) in told.iter().zip(host) {
         for (ours, theirs) in told.metres.iter().zip(host) {
-            // As the image tells it.
+            // Rounded as the image prints it.
             let theirs = f64::from((theirs * 1e6) as i32) * 1e-6;
             apart = apart.max((ours - theirs).abs());
         }
@@ -63,7 +64,8 @@ fn agree(images: &Images, image: &str, stream: &[u8], host: &[[f32; 3]]) -> Resu
     Ok(output)
 }
 
-/// Budgets: instructions a particle and step at most, in `f32` and in fixed point. The short form runs what has one.
+/// Checks the budgets: the largest number of instructions per particle and step, in `f32` and in fixed point. The short
+/// form runs those that have one.
 fn check<const L: usize>(target: &'static Target, budgets: [f64; 2]) -> Result<()> {
     let Some(images) = Images::of(target, Profile::Speed)? else { return Ok(()) };
     let records = circle();

@@ -1,7 +1,7 @@
-//! Recorded flights with truth: the accuracy that the book promises, with one setting for all.
+//! Recorded flights with ground truth: the accuracy that the book promises, with one setting for all.
 //!
-//! They stand beside the repository in `../shared/data/drone`. Where they are absent these tests say SKIPPED and
-//! pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead.
+//! They are in `../shared/data/drone`, beside the repository. Where they are absent these tests print SKIPPED and pass;
+//! with `KESTIRIM_REQUIRE_DATA=1` they fail instead.
 
 use std::path::Path;
 
@@ -22,7 +22,7 @@ fn replay(folder: &Path, log: &str, truth: &str, area: &str) -> Account {
     account
 }
 
-/// Error and expected error of the last estimate, m, and whether the 90 % region holds the truth.
+/// The error and expected error of the last estimate, m, and whether the 90 % region contains the truth.
 fn last(account: &Account) -> (f64, f64, bool) {
     let accuracy = &account.report["accuracy"];
     let error = accuracy["error_m"].as_f64().expect("there is a truth");

@@ -13,9 +13,10 @@ use kestirim_replay::ScalarKind;
 use rayon::prelude::*;
 use target_bench::is_short;
 
-/// Trials of a cell: our own error is then half of that of the published hundred.
+/// The number of trials of a cell: our own error is then half of that of the published hundred.
 const TRIALS: u64 = 400;
-/// One in so many geometries is flown in the short form, from the third on; fewer trials would weaken the bounds.
+/// In the short form, every this many geometries are flown, starting with the third; fewer trials would weaken the
+/// bounds.
 const SOME: usize = 4;
 const SCALARS: [ScalarKind; 3] = [ScalarKind::F32, ScalarKind::F64, ScalarKind::Fixed];
 
@@ -46,10 +47,10 @@ fn published_numbers_are_within_their_own_error_and_ours_are_on_the_limit() {
             } else {
                 Row::of(&paper).beside(Some(published), &paper)
             };
-            // The difference errs by both numbers' errors: of 100 trials, and of ours.
+            // The difference has the errors of both numbers: of 100 trials, and of ours.
             let z = row.published_z.expect("errors vary") / (1.0 + 100.0 / TRIALS as f64).sqrt();
             assert!(z.abs() < 2.5, "{} {}: {z}", cell.table, cell.cell);
-            // On the same measurements, so that the difference is known better than either.
+            // Both use the same measurements, so that the difference is known better than either.
             let excess: Vec<f64> =
                 outcomes.iter().map(|outcome| outcome.bests[cell.best] - outcome.limit).collect();
             let limit = mean(&outcomes.iter().map(|outcome| outcome.limit).collect::<Vec<_>>());

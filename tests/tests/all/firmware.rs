@@ -1,13 +1,13 @@
-//! Bare-metal images under QEMU: what the harness itself is good for, then the workloads.
+//! Bare-metal images under QEMU: first tests of the harness itself, then the workloads.
 //!
-//! On a machine without the tools these tests say SKIPPED and pass; with
+//! On a machine without the tools these tests print SKIPPED and pass; with
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead.
 
 use anyhow::Result;
 use target_bench::streams::{Encode, Sample};
 use target_bench::{Images, Profile, Row, Target};
 
-/// Every test on every target, under the target's name.
+/// Generates every test for every target, in a module named after the target.
 macro_rules! on {
     ($($name:ident => $target:ident: $($test:ident)*;)*) => {$(
         mod $name {
@@ -44,7 +44,7 @@ fn known_code_costs_what_it_must(target: &'static Target) -> Result<()> {
         };
         assert_eq!(instructions("nothing")?, 0);
         assert_eq!(instructions("thousand_nops")?, 1000);
-        // What is not a turn of the loop cancels.
+        // All instructions outside the loop cancel.
         assert_eq!(instructions("spin_long")? - instructions("spin_short")?, 2 * 1_200_000);
     }
     Ok(())
@@ -85,7 +85,7 @@ fn a_stream_becomes_a_path(target: &'static Target) -> Result<()> {
     assert_eq!(output.numbers("samples")?, [samples.len() as i64]);
 
     let told: Vec<_> = output.positions()?.iter().map(|told| (told.time_us, told.metres)).collect();
-    // IEEE single precision is the same everywhere, so the host's sums agree to the last digit told.
+    // IEEE single precision is the same everywhere, so the host's sums agree to the last printed digit.
     assert_eq!(told, integrate(&samples));
 
     let row = Row::of(&images, "integrator", &output)?;
@@ -113,7 +113,7 @@ fn the_harness_cannot_panic(target: &'static Target) -> Result<()> {
     Ok(())
 }
 
-/// Twelve seconds: pushed forwards for half of them, then backwards.
+/// Twelve seconds of samples: accelerated forwards for half of them, then backwards.
 fn there_and_back() -> Vec<Sample> {
     let sample = |i: u32| Sample {
         elapsed_us: 10_000 + i % 7,
@@ -123,7 +123,7 @@ fn there_and_back() -> Vec<Sample> {
     (0..1234).map(sample).collect()
 }
 
-/// The image `integrator`, on the host: (time in µs, position in m as told) every 50 samples and last.
+/// The image `integrator`, on the host: the time (µs) and position (m, as printed) after every 50 samples and the last.
 fn integrate(samples: &[Sample]) -> Vec<(i64, [f64; 3])> {
     let mut time_us = 0;
     let (mut velocity, mut position) = ([0.0_f32; 3], [0.0_f32; 3]);

@@ -1,9 +1,9 @@
-//! What the elementary functions cost on emulated boards. With `--nocapture` the table is printed.
+//! The costs of the elementary functions on emulated boards. With `--nocapture` the table is printed.
 
 use anyhow::{Context, Result};
 use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Target};
 
-/// The most a function in fixed point may cost on a Cortex-M0, in instructions.
+/// The largest accepted cost of a fixed-point function on a Cortex-M0, in instructions.
 const BUDGETS: [(&str, f64); 4] = [("sin", 210.0), ("atan2", 600.0), ("exp", 250.0), ("ln", 250.0)];
 const OTHERS: [&str; 7] = ["sin_cos", "sqrt", "hypot", "recip", "multiply", "divide", "divisor"];
 

@@ -1,5 +1,5 @@
-//! The book's figures of satellite positioning, from recordings: the paper's figures 3 to 5 on data whose faults
-//! are known, drawn as in the report.
+//! The book's figures of satellite positioning, from recordings: the paper's figures 3 to 5 on data with known faults,
+//! drawn as in the report.
 //!
 //! `cargo test --release -p kestirim-tests --test all gnss_figures:: -- --ignored`
 
@@ -21,7 +21,7 @@ use rayon::prelude::*;
 
 type Days = Vec<(FilterKind, Followed)>;
 
-/// What filters make of a station's day, with what became of each observation.
+/// The results of the filters on a station's day, including the treatment of each observation.
 fn follow_all(station: &Station, folder: &Path, filters: &[FilterKind], motion: Motion) -> Days {
     let recording = station.read(folder);
     let receiver = recording.receiver(Corrections::ALL);
@@ -34,7 +34,7 @@ fn follow_all(station: &Station, folder: &Path, filters: &[FilterKind], motion: 
     filters.par_iter().map(day).collect()
 }
 
-/// Draws errors over the hours, thinned out: each epoch of the first hour, then one in twenty.
+/// Draws errors over the hours, decimated: each epoch of the first hour, then one in twenty.
 fn draw_errors(name: &str, title: &str, station: &Station, mut days: Days) -> io::Result<()> {
     for (_, followed) in &mut days {
         let fixes = std::mem::take(&mut followed.fixes).into_iter().enumerate();
@@ -45,7 +45,7 @@ fn draw_errors(name: &str, title: &str, station: &Station, mut days: Days) -> io
     draw_figure(&errors(Figure::new(name, title), filters, &Vector3::from(station.truth)))
 }
 
-/// Figure 3: what is left in the codes.
+/// Figure 3: the code residuals.
 #[test]
 #[ignore = "makes the book's figures"]
 fn residuals() -> io::Result<()> {
@@ -61,7 +61,7 @@ fn residuals() -> io::Result<()> {
     Ok(())
 }
 
-/// Figure 4: a receiver that is known to stand still.
+/// Figure 4: a receiver that is known to be static.
 #[test]
 #[ignore = "makes the book's figures"]
 fn standing() -> io::Result<()> {
@@ -77,7 +77,7 @@ fn standing() -> io::Result<()> {
     Ok(())
 }
 
-/// Figure 5: a receiver that might move.
+/// Figure 5: a receiver that may move.
 #[test]
 #[ignore = "makes the book's figures"]
 fn moving() -> io::Result<()> {

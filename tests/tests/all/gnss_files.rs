@@ -1,15 +1,15 @@
-//! Recorded files of observations, orbits, clocks, antennas and ocean loading are read whole.
+//! Recorded files of observations, orbits, clocks, antennas and ocean loading are read completely.
 //!
-//! They stand beside the repository in `../shared/data/gnss`. Where they are absent these tests say SKIPPED
-//! and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead.
+//! They are in `../shared/data/gnss`, beside the repository. Where they are absent these tests print SKIPPED and pass;
+//! with `KESTIRIM_REQUIRE_DATA=1` they fail instead.
 
 use std::path::Path;
 
 use kestirim_gnss_files::{Antennas, Carriers, Clocks, Observations, Orbits, StationLoading};
 use kestirim_tests::recordings::folder_of;
 
-/// Counts and sums that another reader found: epochs, observations, the sum of all C1W (m) and of all L2W
-/// (cycles), lost locks on L1.
+/// Counts and sums that another reader found: epochs, observations, the sum of all C1W (m) and of all L2W (cycles), and
+/// losses of lock on L1.
 type Whole = (usize, usize, f64, f64, usize);
 
 fn whole(file: &Path) -> Whole {

@@ -1,4 +1,4 @@
-//! Whole ambiguities: an hour at a time, from nothing, beside the same with the filter's own.
+//! Integer ambiguities: one hour at a time, from a cold start, compared with the filter's float ambiguities.
 //!
 //! `cargo test -p kestirim-tests --test all gnss_fixed:: -- --nocapture` prints the book's tables.
 
@@ -12,18 +12,18 @@ use kestirim_tests::gnss::{ESBC, ESBC_MULTI};
 use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;
 
-/// Length of a session, s.
+/// The length of a session, s.
 const SESSION: f64 = 3600.0;
-/// A fixed position that is farther off, horizontally, is from wrong integers, m: a cycle is 11 cm.
+/// The horizontal error above which a fixed position is taken to have wrong integers, m: a cycle is 11 cm.
 const WRONG: f64 = 0.05;
-/// From here on a session is good, m.
+/// The horizontal error below which a session is good, m.
 const GOOD: f64 = 0.03;
 
 fn esbc() -> Option<Recording> {
     Some(ESBC_MULTI.read(&folder_of("gnss")?))
 }
 
-/// The epochs from one second of the day to another.
+/// Runs the epochs between two seconds of the day.
 fn run(recording: &Recording, seconds: Range<f64>, pass: Pass) -> Followed {
     let epochs = recording.epochs(Some(seconds.end.min(ESBC_MULTI.until)));
     let from = epochs.partition_point(|epoch| recording.seconds(epoch) < seconds.start);
@@ -31,13 +31,13 @@ fn run(recording: &Recording, seconds: Range<f64>, pass: Pass) -> Followed {
     follow(recording, &epochs[from..], &receiver, Config::new(Motion::Static), pass, &mut || ())
 }
 
-/// Horizontal errors, m.
+/// The horizontal errors, m.
 fn errors(followed: &Followed) -> Vec<f64> {
     let truth = Vector3::from(ESBC.truth);
     followed.enu_from(&truth).iter().map(|[east, north, _]| east.hypot(*north)).collect()
 }
 
-/// Minutes until errors are small and stay so; the whole session if they never do.
+/// The minutes until errors stay small; the whole session if they never do.
 fn minutes(followed: &Followed, begin: f64) -> f64 {
     let errors = errors(followed);
     let small = errors.iter().rev().take_while(|error| **error < GOOD).count();
@@ -45,9 +45,10 @@ fn minutes(followed: &Followed, begin: f64) -> f64 {
     since.map_or(SESSION, |fix| fix.t - begin) / 60.0
 }
 
-/// Of all sessions that begin so many seconds after the hour: the medians of the error at the end, mm, and of the minutes to 3 cm,
-/// with the filter's ambiguities and with whole ones; how many sessions were fixed, how many fixed positions were wrong, and the
-/// worst of them, mm.
+/// The results of all sessions that begin at the same number of seconds after the hour.
+///
+/// The medians, with float and with integer ambiguities, of the error at the end, mm, and of the minutes to 3 cm; the
+/// number of fixed sessions, the number of wrong fixed positions, and the largest error of these, mm.
 struct Table {
     ends: [f64; 2],
     minutes: [f64; 2],
@@ -111,8 +112,8 @@ fn an_hour_with_whole_ambiguities() {
     assert!(table.worst_end[1] <= table.worst_end[0]);
 }
 
-/// Other beginnings; among those of 20 and 25 minutes past are the four that were wrong longest with a ratio of two, at 50 minutes
-/// past the one that was so with a ratio of 2.5 at every success rate.
+/// Other beginnings. Among those at 20 and 25 minutes past are the four sessions that were wrong longest with a ratio
+/// of two; at 50 minutes past, the one that was so with a ratio of 2.5 at every success rate.
 #[test]
 fn other_hours_with_whole_ambiguities() {
     let Some(recording) = esbc() else { return };
@@ -123,7 +124,8 @@ fn other_hours_with_whole_ambiguities() {
     }
 }
 
-/// All beginnings every five minutes: `cargo test --release -p kestirim-tests --test all every_five_minutes -- --ignored --nocapture`.
+/// All beginnings, every five minutes:
+/// `cargo test --release -p kestirim-tests --test all every_five_minutes -- --ignored --nocapture`.
 #[test]
 #[ignore = "some minutes"]
 fn every_five_minutes_with_whole_ambiguities() {

@@ -1,22 +1,22 @@
-//! Recorded walks with samples taken out, or repeated in place of what was measured: how far the path goes astray, and whether its
-//! standard deviation has it.
+//! Recorded walks with samples removed or replaced by repeated ones: how far the path deviates, and whether its
+//! standard deviation covers that.
 
 use host_sim::metrics::median;
 use host_sim::systems::pedestrian::recording::log;
 use kestirim_replay::pedestrian::{Options, Sample, SensorClass, Walk, walk};
 use kestirim_tests::recordings::{self, GCP, gcp};
 
-/// In how many places of a walk samples are taken out.
+/// The number of places in a walk at which samples are removed.
 const PLACES: u64 = 6;
 
-/// A causal walk without the samples of a stretch of time, µs.
+/// Tracks a walk causally without the samples of a stretch of time, µs.
 fn without(samples: &[Sample], from_us: u64, length_us: u64) -> Walk {
     let is_kept = |time_us: u64| time_us <= from_us || time_us >= from_us + length_us;
     let kept: Vec<_> = samples.iter().filter(|it| is_kept(it.time_us)).copied().collect();
     walk(&kept, &industrial()).expect("a walk")
 }
 
-/// The same with the sample before it again and again: of a sensor that is not read anew.
+/// Tracks a walk causally with one sample repeated over a stretch of time, as of a sensor that is not read anew.
 fn stalled(samples: &[Sample], from_us: u64, length_us: u64) -> Walk {
     let last = samples.partition_point(|it| it.time_us <= from_us).saturating_sub(1);
     let is_stalled = |time_us: u64| time_us > from_us && time_us < from_us + length_us;
@@ -32,7 +32,8 @@ fn industrial() -> Options {
     Options { sensor: SensorClass::Industrial, causal: true, ..Options::default() }
 }
 
-/// How far footprints after a time are from those of the whole walk, m, and over their standard deviations; root mean squares.
+/// The distance of the footprints after a time from those of the whole walk, m, and that over their standard
+/// deviations; root mean squares.
 fn astray(whole: &Walk, walk: &Walk, after_us: u64) -> Option<[f64; 2]> {
     let (mut squares, mut ratios, mut count) = (0.0, 0.0, 0.0);
     for stride in walk.strides.iter().filter(|it| it.time_us > after_us) {
@@ -46,7 +47,7 @@ fn astray(whole: &Walk, walk: &Walk, after_us: u64) -> Option<[f64; 2]> {
     (count > 0.0).then(|| [squares, ratios].map(|sum: f64| (sum / count).sqrt()))
 }
 
-/// What comes of a fault of so many µs in each of some places of eight walks: how far they are off, m, and over σ.
+/// Applies a fault of each length, µs, at some places of eight walks; returns the errors, m, and the errors over σ.
 fn spoilt(
     spoil: impl Fn(&[Sample], u64, u64) -> Walk,
     lengths_us: &[u64],
@@ -84,7 +85,7 @@ fn spoilt(
     Some(lengths_us.iter().map(of_length).collect())
 }
 
-/// How many are beyond three standard deviations.
+/// The number of results beyond three standard deviations.
 fn beyond(all: &[[f64; 2]]) -> usize {
     all.iter().filter(|[_, ratio]| *ratio > 3.0).count()
 }

@@ -10,7 +10,7 @@ use nalgebra::SVector;
 use target_bench::streams::{Encode, Sample, walk};
 use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Target};
 
-/// The walk on the host: time (µs) and position (m) after every 50 samples and the last, and the length (m).
+/// The walk on the host: the time (µs) and position (m) after every 50 samples and the last, and the length (m).
 fn on_host<T: Scalar, N: Navigator<T>>(samples: &[Sample]) -> (Vec<(i64, [f64; 3])>, f64) {
     let mut tracker = Tracker::<T, N>::new(Config::default());
     let mut time_us = 0;
@@ -32,7 +32,7 @@ fn on_host<T: Scalar, N: Navigator<T>>(samples: &[Sample]) -> (Vec<(i64, [f64; 3
     (path, tracker.path_length().to_f64())
 }
 
-/// Mean instructions of a sample at most: over the whole walk, in swing, and in stance.
+/// The largest mean number of instructions of a sample: over the whole walk, in swing, and in stance.
 struct Budget {
     walk: f64,
     swing: f64,
@@ -55,7 +55,7 @@ fn check<T: Scalar, N: Navigator<T>>(
     for (told, (time_us, position)) in told.iter().zip(&expected) {
         assert_eq!(told.time_us, *time_us);
         for (ours, theirs) in told.metres.iter().zip(position) {
-            // Bit for bit the same arithmetic; positions are told to the micrometre.
+            // The arithmetic is bit for bit the same; positions are printed to the micrometre.
             assert!((ours - theirs).abs() < 3e-6, "{image} at {time_us} µs: {ours} or {theirs} m");
         }
     }

@@ -1,8 +1,7 @@
-//! Recorded walks with truth: the accuracy that the book promises, one configuration for all.
+//! Recorded walks with ground truth: the accuracy that the book promises, with one configuration for all.
 //!
-//! The recordings stand beside the repository in `../shared/data/pedestrian`. Where they are absent these
-//! tests say SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each walk
-//! is printed.
+//! The recordings are in `../shared/data/pedestrian`, beside the repository. Where they are absent these tests print
+//! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each walk is printed.
 
 use std::path::PathBuf;
 
@@ -64,7 +63,7 @@ fn walks_seen_by_cameras() {
 #[test]
 fn smoothed_no_foot_jumps_as_it_lands() {
     let Some(folder) = recordings::folder() else { return };
-    // How much further than in the sample before the track goes in one, m.
+    // The largest second difference of the track, m, from sample to sample.
     let jump = |walk: &Walk| {
         let places = walk.track.windows(3).map(|it| [it[0], it[1], it[2]].map(|it| it.position));
         let second = |[a, b, c]: [[f64; 3]; 3]| {
@@ -88,7 +87,7 @@ fn smoothed_no_foot_jumps_as_it_lands() {
     assert!(ratios.iter().all(|ratio| *ratio < 0.25), "{ratios:?}");
 }
 
-/// What a replay reports, without a magnetometer, of files and their fields: of a walk that may be said to go along right angles.
+/// The report of a replay of these files, without a magnetometer, with or without assuming a walk along right angles.
 fn report(given: &[(&str, PathBuf)], right_angles: bool) -> serde_json::Value {
     let mut files = Files::default();
     for (field, path) in given {
@@ -101,8 +100,9 @@ fn report(given: &[(&str, PathBuf)], right_angles: bool) -> serde_json::Value {
     opened.replay(&settings, &Wanted::default()).expect("a walk").report
 }
 
-/// Walks along a line and back, along rectangles, and around columns, whose headings hardly drift at 50 Hz: there right angles cost a tenth of a
-/// metre at most, of exp36 (there and back). Loops whose headings drift gain.
+/// Walks along a line and back, along rectangles, and around columns, whose headings hardly drift at 50 Hz: there
+/// assuming right angles costs a tenth of a metre at most, in exp36 (there and back). Loops whose headings drift
+/// improve.
 #[test]
 fn right_angles_correct_the_heading_where_there_are_some() {
     let Some(folder) = recordings::folder() else { return };
@@ -154,7 +154,7 @@ fn loops_of_a_bare_chip_close() {
     assert_eq!(logs, 4);
 }
 
-/// The logs of each pair are of one foot: its stances are at the same moments.
+/// The two logs of each pair are of the same foot: its stances coincide.
 #[test]
 fn two_sensors_on_one_walk_agree_and_those_of_two_walks_do_not() {
     let Some(folder) = recordings::folder() else { return };
@@ -185,7 +185,7 @@ fn two_sensors_on_one_walk_agree_and_those_of_two_walks_do_not() {
     assert!(warnings.contains("the other foot is not used"), "{warnings}");
 }
 
-/// Error over standard deviation, of all walks together and of each.
+/// Errors over standard deviations, of all walks together and of each.
 #[test]
 fn standard_deviations_are_honest() {
     let Some(folder) = recordings::folder() else { return };
@@ -203,7 +203,7 @@ fn standard_deviations_are_honest() {
     }
 }
 
-/// A stalled bus delivers zeros, a full queue nothing: the path before and after is as without it.
+/// A stalled bus delivers zeros, a full queue nothing: the path before and after is unaffected.
 #[test]
 fn a_walk_goes_on_after_stalls_and_gaps() {
     let Some(folder) = recordings::folder() else { return };
@@ -233,7 +233,7 @@ fn a_walk_goes_on_after_stalls_and_gaps() {
                 let faulty = walk(&faulty, &options).expect("a walk");
                 let finite = |point: &TrackPoint| point.position.iter().all(|it| it.is_finite());
                 assert!(faulty.track.iter().all(finite));
-                // Three strides to notice and to level.
+                // Three strides to notice and to align.
                 let path = |walk: &Walk, from: u64, to: u64| -> f64 {
                     let inside = walk.strides.iter().filter(|it| (from..to).contains(&it.time_us));
                     inside.map(|stride| stride.length_m).sum()

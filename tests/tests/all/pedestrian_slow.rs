@@ -1,12 +1,12 @@
-//! Recorded walks as a slow walker would have walked them: the same footprints, at a slower pace.
+//! Recorded walks slowed down: the same footprints at a slower pace.
 
 use host_sim::systems::pedestrian::recording::log;
 use kestirim_replay::pedestrian::{Options, Sample, SensorClass, walk};
 use kestirim_tests::recordings::{self, gcp};
 use nalgebra::Vector3;
 
-/// What the sensor would have measured `slower` times as slow: rates fall as much, and with its square all of the force that is
-/// not gravity's.
+/// The samples of a walk that is slower by the factor `slower`: angular rates decrease by the factor, and the specific
+/// force without gravity by its square.
 fn slowed(samples: &[Sample], slower: f64) -> Vec<Sample> {
     let start = &samples[50..150];
     let mean = |of: fn(&Sample) -> [f64; 3]| {
@@ -29,7 +29,7 @@ fn slowed(samples: &[Sample], slower: f64) -> Vec<Sample> {
     samples.iter().zip(ups).map(slow).collect()
 }
 
-/// The vertical at each sample, as the gyroscope carries it and standstills correct it, in either direction of time.
+/// The vertical at each sample, as the gyroscope propagates it and standstills correct it, in either direction of time.
 fn verticals<'a>(
     samples: impl Iterator<Item = &'a Sample>,
     (bias, gravity): (Vector3<f64>, f64),
@@ -50,7 +50,7 @@ fn verticals<'a>(
     samples.map(step).collect()
 }
 
-/// A stride in two seconds.
+/// One stride in two seconds.
 #[test]
 fn a_slow_walker_walks_as_far() {
     let Some(folder) = recordings::folder() else { return };

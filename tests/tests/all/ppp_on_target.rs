@@ -1,6 +1,6 @@
-//! Precise point positioning on emulated boards: the very positions that the host finds, within the budgets.
+//! Precise point positioning on emulated boards: the same positions as on the host, bit for bit, within the budgets.
 //!
-//! On a machine without the tools these tests say SKIPPED and pass; with
+//! On a machine without the tools these tests print SKIPPED and pass; with
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print the table of costs.
 
 use anyhow::{Context, Result, ensure};
@@ -11,15 +11,16 @@ use kestirim_tests::ppp::{EPOCHS, Epoch, Epochs, Filter, OUTLIERS, receiver, sta
 use nalgebra::Vector3;
 use target_bench::{CORTEX_M4F, Images, Output, Profile, RV32IMC, Target};
 
-/// Static variables, filter and stack at most, bytes.
+/// The largest accepted size of static variables, filter and stack, bytes.
 const MEMORY: u64 = 64 << 10;
-/// The whole image at most, bytes.
+/// The largest accepted size of the whole image, bytes.
 const FLASH: u64 = 256 << 10;
 
-/// What an epoch told: x y z, the receiver's clock and the wet delay, m; how many codes and phases were treated.
+/// The results of an epoch: x, y, z, the receiver's clock and the wet delay, m; and the numbers of codes and phases
+/// that were treated.
 type Told = ([f64; 5], [i64; 2]);
 
-/// Settings of the image's filters by their names.
+/// The settings of the image's filters, by name.
 fn config(filter: &str) -> Config<Lean> {
     let mut config = Config::new(Motion::Static).with_estimator(Estimator::at_rest());
     if filter != "gradients" {
@@ -32,7 +33,7 @@ fn config(filter: &str) -> Config<Lean> {
     config
 }
 
-/// The image `ppp` on the host.
+/// The results of the image `ppp`, computed on the host.
 fn on_host(filter: &str) -> Result<Vec<Told>> {
     let mut filter = Filter::new(config(filter));
     let solve = |epoch: Epoch| {
@@ -52,7 +53,7 @@ fn on_host(filter: &str) -> Result<Vec<Told>> {
     Epochs::at(station()).map(solve).collect()
 }
 
-/// What the image told of one filter.
+/// The results that the image printed for one filter.
 fn on_target(output: &Output, filter: &str) -> Result<Vec<Told>> {
     let solutions = output.rows::<5>(&format!("{filter}.solution"))?;
     let treated = output.rows::<2>(&format!("{filter}.treated"))?;
@@ -80,8 +81,8 @@ fn the_station_is_found_despite_outliers() -> Result<()> {
     Ok(())
 }
 
-/// What an epoch may cost at most, in thousands of instructions: the first, one with good observations, one with
-/// outliers; of the default filter without gradients and with them, and of the plain one. And bytes of stack.
+/// The largest accepted cost of an epoch, in thousands of instructions (of the first, of one with good observations, of
+/// one with outliers; for the default filter without and with gradients, and for the plain one), and of stack, bytes.
 struct Budgets {
     default: [u64; 3],
     gradients: [u64; 3],

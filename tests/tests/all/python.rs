@@ -1,9 +1,11 @@
-//! The Python package, installed into an environment of its own, and tested there. Its module is the one that cargo built
-//! with these tests; with `KESTIRIM_WHEEL=1` a wheel is built and installed, as `pip install ./crates/python` does, which
-//! takes minutes.
+//! Installs the Python package into an environment of its own and runs its tests there.
 //!
-//! Without Python, its `venv`, or a way to `PyPI` this test says SKIPPED and passes; with `KESTIRIM_REQUIRE_PYTHON=1` it
-//! fails instead, and so it does if other packages, whose speed ours is compared with, cannot be had.
+//! The module is the one that cargo built with these tests; with `KESTIRIM_WHEEL=1` a wheel is built and installed, as
+//! `pip install ./crates/python` does, which takes minutes.
+//!
+//! Without Python, its `venv`, or access to `PyPI` this test prints SKIPPED and passes; with
+//! `KESTIRIM_REQUIRE_PYTHON=1` it fails instead, also if other packages, whose speed ours is compared with, are
+//! unavailable.
 
 use std::env::{
     self,
@@ -17,7 +19,7 @@ use std::process::{Command, Output};
 
 use anyhow::{Context, Result, ensure};
 
-/// A wheel is no larger, bytes.
+/// The largest accepted size of a wheel, bytes.
 const LARGEST_WHEEL: u64 = 8 << 20;
 
 fn skipped(why: &str) -> Result<()> {
@@ -40,7 +42,7 @@ fn crate_folder() -> PathBuf {
 /// Runs a program of the environment.
 fn run(program: &str, arguments: &[&str]) -> io::Result<Output> {
     let (build, programs) = (target().join("target"), target().join("venv/bin"));
-    // The builder of wheels calls `maturin` by its name.
+    // The wheel builder calls `maturin` by its name.
     let others = env::var_os("PATH").unwrap_or_default();
     let path = env::join_paths(iter::once(programs.clone()).chain(env::split_paths(&others)))
         .map_err(io::Error::other)?;
@@ -55,13 +57,13 @@ fn run(program: &str, arguments: &[&str]) -> io::Result<Output> {
         .output()
 }
 
-/// What it printed.
+/// The standard output of a successful program.
 fn done(what: &str, output: io::Result<Output>) -> Result<String> {
     let output = output?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     let (out, err) = (text(&output.stdout), text(&output.stderr));
     ensure!(output.status.success(), "{what}: {}\n{out}\n{err}", output.status);
-    // With --nocapture: what was tested and what was skipped.
+    // With `--nocapture`: what was tested and what was skipped.
     println!("{out}");
     Ok(out)
 }
@@ -114,8 +116,8 @@ fn the_package_is_installed_and_tested() -> Result<()> {
             return skipped("there is no python3 with venv");
         }
     }
-    // What the package and its tests need; peers are compared with where they can be had. Of what is installed a small part
-    // is loaded, and compiled then.
+    // The requirements of the package and its tests; peers are compared with where available. Only a small part of what
+    // is installed is loaded, and compiled at that time.
     let mut needed =
         vec!["install", "-q", "--no-compile", "numpy>=1.22", "pytest", "mypy", "pandas"];
     needed.extend(as_wheel.then_some("maturin>=1.9,<2"));

@@ -13,7 +13,7 @@ use nalgebra::{SMatrix, SVector};
 use target_bench::streams::{Common, Encode, PLACES, Ranges, ellipse};
 use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Output, Profile, RV32IMC, Row, Target};
 
-/// Bit for bit the same arithmetic; positions are told to the micrometre (m).
+/// The largest difference, m: the arithmetic is bit for bit the same, and positions are printed to the micrometre.
 const SAME: f64 = 3e-6;
 
 /// The states after each step, as the image computes them.
@@ -70,7 +70,7 @@ fn published<T: Scalar>(ranges: &[[f64; 4]]) -> Steps {
     ranges.iter().map(step).collect()
 }
 
-/// The ranges as an image reads them.
+/// The ranges as an image receives them.
 fn received(common: &Common) -> Vec<[f64; 4]> {
     common.ranges.iter().map(|row| row.map(|range| f64::from(range as f32))).collect()
 }
@@ -97,7 +97,7 @@ fn tracked<T: Scalar, const D: usize, const N: usize, const A: usize>(samples: &
     samples.iter().map(step).collect()
 }
 
-/// Runs an image and compares what it tells, every fifty steps, with the host.
+/// Runs an image and compares its output, every fifty steps, with the host.
 fn agree(images: &Images, image: &str, stream: &[u8], host: &Steps) -> Result<Output> {
     let output = images.run(image, stream)?;
     let row = Row::of(images, image, &output)?;
@@ -120,14 +120,14 @@ fn agree(images: &Images, image: &str, stream: &[u8], host: &Steps) -> Result<Ou
     Ok(output)
 }
 
-/// Mean instructions at most.
+/// The largest accepted mean numbers of instructions.
 #[derive(Clone, Copy)]
 struct Budgets {
     /// A prediction and four ranges, in `f32` and in fixed point.
     ekf: [f64; 2],
-    /// The same with both adaptations, and as published.
+    /// A prediction and four ranges with both adaptations, and as published.
     aekf: [f64; 2],
-    /// A range with gate and Huber, in the plane and in space, in `f32`.
+    /// A range with gate and Huber weight, in the plane and in space, in `f32`.
     update: [f64; 2],
 }
 

@@ -1,7 +1,7 @@
-//! Recorded ranges with truth: the accuracy that the book promises, one configuration for all.
+//! Recorded ranges with ground truth: the accuracy that the book promises, with one configuration for all.
 //!
-//! The recordings stand beside the repository in `../shared/data/robot`. Where they are absent these tests say
-//! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
+//! The recordings are in `../shared/data/robot`, beside the repository. Where they are absent these tests print SKIPPED
+//! and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
 use std::path::Path;
 
@@ -41,7 +41,7 @@ fn points_among_four_corners() {
         let calibrated = tested.track(method, Some(&biases));
         within("groups 1 to 4, calibrated at 5", method, calibrated.mean_m, 0.062);
     });
-    // The methods beside it, as they are known from these recordings.
+    // Other methods, with the errors that are known from these recordings.
     let method = |tracker| Method { tracker, ..Method::DEFAULT };
     let plain = points.track(method(TrackerKind::Lsq), None).mean_m;
     assert!((0.125..0.145).contains(&plain), "{plain}");
@@ -67,7 +67,7 @@ fn a_robot_that_creeps_among_three_anchors() {
         for (name, most) in [("esp32_los2", 0.06), ("esp32_wall2", 0.22)] {
             let (accuracy, followed) = Recording::read(&folder, name).track(method, None);
             within(name, method, accuracy.rmse_m, most);
-            // A first position among three anchors takes five ranges more.
+            // A first position among three anchors takes five more ranges.
             assert!(accuracy.missed <= 2 && followed.lost_s() < 0.5, "never lost: {followed:?}");
         }
     });
@@ -82,7 +82,7 @@ fn a_trolley_among_eight_anchors() {
             let recording = Recording::read(&folder, name);
             let (accuracy, followed) = recording.track(method, Some(biases.clone()));
             within(name, method, accuracy.rmse_m, 0.066);
-            // A first position among eight anchors takes three ranges more.
+            // A first position among eight anchors takes three more ranges.
             assert!(accuracy.missed <= 1 && followed.lost_s() < 0.1, "never lost: {followed:?}");
         }
     });
@@ -96,7 +96,7 @@ fn single_ranges_in_a_labyrinth() {
     in_every_scalar(|method| {
         let (accuracy, followed) = recording.track(method, Some(biases.clone()));
         within("labyrinth", method, accuracy.rmse_m, 0.14);
-        // Three of four anchors are not yet a position.
+        // Three of four anchors do not yet determine a position.
         assert!(accuracy.missed <= 3 && followed.lost_s() < 0.5);
     });
 }
@@ -125,9 +125,9 @@ fn wild_ranges_do_little_harm() {
     });
 }
 
-/// A range with a clear view: true distance, measured one (m), and the received level (dBm).
+/// Ranges with a clear view: true distance (m), measured one (m), and received level (dBm).
 fn ranges_by_level() -> Option<Vec<(f64, f64, f64)>> {
-    /// Height of the antenna that stayed where it was, m; the recording names that of the other one.
+    /// The height of the stationary antenna, m; the recording gives that of the other one.
     const FIXED_HEIGHT: f64 = 1.05;
     let file = folder_of("robot")?.join("cucu_static_los_nlos/ranges.csv");
     let text = std::fs::read_to_string(file).expect("ranges");
@@ -145,7 +145,7 @@ fn ranges_by_level() -> Option<Vec<(f64, f64, f64)>> {
 #[test]
 fn the_received_level_tells_most_of_the_bias() {
     let Some(rows) = ranges_by_level() else { return };
-    // Knots from the distances with even numbers, tested on those with odd ones.
+    // Knots are computed from the distances with even numbers, and tested on those with odd ones.
     let even = |distance: f64| (distance / 4.0).floor() as i64 % 2 == 0;
     let levels = [-86.0, -85.0, -84.0, -83.0, -82.0, -81.0, -80.0, -79.0_f64];
     let knots = levels.map(|level| {
@@ -172,15 +172,16 @@ fn the_received_level_tells_most_of_the_bias() {
     assert!(wrong_sign > plain);
 }
 
-/// How a recording with truth came out.
+/// The results of a recording with ground truth.
 struct Found {
-    /// The height by which it is known, and by which it was found, m, with its deviation; none if the run was refused.
+    /// The known height, m, and the estimated height with its standard deviation; `None` if the run was refused.
     known_m: f64,
     height: Option<FoundHeight>,
-    /// Root mean square errors of the position at the one and the other, m.
+    /// The root mean square errors of the position at the known and at the estimated height, m.
     at_known_m: f64,
     at_found_m: Option<f64>,
-    /// Shares of the positions that err by no more than 2.5 σ, as the ellipse tells it.
+    /// The shares of positions within 2.5 σ of the truth, as the ellipse gives it, at the known and at the estimated
+    /// height.
     within_at_known: f64,
     within: Option<f64>,
 }
@@ -192,7 +193,7 @@ fn is_within(position: [f64; 3], [xx, xy, yy]: [f64; 3], truth: [f64; 2]) -> boo
     squared <= 2.5 * 2.5
 }
 
-/// A recording as `host-sim replay robot` opens it, with the height and without.
+/// A recording as `host-sim replay robot` opens it, with and without the height.
 fn found(folder: &Path, name: &str, scalar: &str) -> Found {
     let folder = folder.join(name);
     let file = |name: &str| Some(folder.join(name)).filter(|path| path.exists());
@@ -262,7 +263,7 @@ fn a_height_that_nobody_says_is_found_or_asked_for() {
     }
 }
 
-/// Recordings whose tag stays at one height, which is known.
+/// Recordings whose tag stays at one known height.
 const AT_A_HEIGHT: [&str; 20] = [
     "esp32_los2",
     "esp32_nlos1",
@@ -313,7 +314,7 @@ fn heights_are_honest() {
         );
         told += 1;
         honest += u32::from((height.metres - found.known_m).abs() <= 2.5 * height.sigma_m);
-        // What the height costs is what was said.
+        // The estimated height costs no more accuracy than was stated.
         let most = found.at_known_m + 2.5 * height.position_sigma_m;
         assert!(rmse_m < most, "{name}: {rmse_m} m");
     }

@@ -1,6 +1,6 @@
-//! The five robust filters on recorded ranges of which one anchor's go through a person.
+//! The five robust filters on recorded ranges, those of one anchor through a person.
 //!
-//! A few lines of glue and no tracker: what the weights alone are good for.
+//! A few lines of glue instead of a tracker: this shows the effect of the weights alone.
 
 use std::path::Path;
 
@@ -15,12 +15,12 @@ use kestirim_uwb_ranging::expected_range;
 use nalgebra::{SVector, Vector3};
 
 const ANCHORS: usize = 4;
-/// Standard deviation of a range with a clear view, m.
+/// The standard deviation of a range with a clear view, m.
 const SIGMA: f64 = 0.05;
-/// Of the walker's acceleration, m²/s³.
+/// The power spectral density of the walker's acceleration, m²/s³.
 const DENSITY: f64 = 0.3;
 
-/// Root mean square error of a recording, m.
+/// The root mean square error of a recording, m.
 fn follow(folder: &Path, name: &str, biases: &[f64], robust: &Robust<f64>) -> f64 {
     let folder = folder.join(name);
     let anchors = anchors::read(&folder.join("anchors.csv")).expect("anchors");
@@ -32,7 +32,7 @@ fn follow(folder: &Path, name: &str, biases: &[f64], robust: &Robust<f64>) -> f6
     let places: Vec<Vector3<f64>> =
         anchors.positions.iter().map(|&place| Vector3::from(place)).collect();
 
-    // In the middle of the anchors, to begin with.
+    // The initial position is the centre of the anchors.
     let middle = places.iter().sum::<Vector3<f64>>() / places.len() as f64;
     let start = SVector::from([middle.x, middle.y, 0.0, 0.0]);
     let mut tag = Gaussian::new(start, Covariance::from_variances(&[9.0, 9.0, 1.0, 1.0]));
@@ -64,7 +64,7 @@ fn follow(folder: &Path, name: &str, biases: &[f64], robust: &Robust<f64>) -> f6
             })
             .collect();
         robust.update(&mut tag, &measurements, &mut decisions).expect("an update");
-        // The first second is the way from the middle of the room.
+        // The first second, in which the estimate moves from the centre of the room, does not count.
         if let Some([x, y, _]) =
             truth.within(time_us).filter(|_| time_us > rows[0].time_us + 1_000_000)
         {

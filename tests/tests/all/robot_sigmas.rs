@@ -1,7 +1,7 @@
-//! Errors of a tag over the standard deviations that were told of them. With `--nocapture` each recording is printed.
+//! The errors of a tag over their reported standard deviations. With `--nocapture` each recording is printed.
 //!
-//! The recordings stand beside the repository in `../shared/data/robot`. Where they are absent these tests say
-//! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead.
+//! The recordings are in `../shared/data/robot`, beside the repository. Where they are absent these tests print SKIPPED
+//! and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use kestirim_replay::robot::{Epoch, Setup};
 use kestirim_tests::recordings::folder_of;
 use kestirim_tests::robot::{BLOCKED, Points, Recording};
 
-/// A tag that moves, with a dense truth: the recording, and its dimensions.
+/// Recordings of a moving tag with a dense truth, and their dimensions.
 pub(crate) const MOVING: [(&str, &str); 13] = [
     ("esp32_los2", "2"),
     ("esp32_wall2", "2"),
@@ -30,7 +30,7 @@ pub(crate) const MOVING: [(&str, &str); 13] = [
     ("miluv_obst_random3_tag10", "3"),
 ];
 
-/// A tag that stands, some with a person before an anchor; and one that mostly stands behind walls.
+/// Recordings of a stationary tag, some with a person before an anchor, and of one that mostly stands behind walls.
 pub(crate) const STANDING: [(&str, &str); 12] = [
     ("trek_4vnm", "2"),
     ("trek_4vnm2", "2"),
@@ -46,30 +46,30 @@ pub(crate) const STANDING: [(&str, &str); 12] = [
     ("lias_static_814", "2"),
 ];
 
-/// χ² of two degrees of freedom that 90 % are below.
+/// The 90 % quantile of χ² with two degrees of freedom.
 const NINE_TENTHS: f64 = 4.605;
 
-/// What the positions of a recording, or of some, were worth.
+/// The accuracy and honesty of the positions of one or more recordings.
 #[derive(Clone, Copy)]
 pub(crate) struct Told {
-    /// Mean square of the error and of its standard deviation, m².
+    /// The mean squares of the error and of its reported standard deviation, m².
     squares: [f64; 2],
-    /// The share of true places that the 90 % regions hold.
+    /// The share of 90 % regions that contain the true position.
     held: f64,
 }
 
 impl Told {
-    /// Root mean square error, m.
+    /// The root mean square error, m.
     pub(crate) fn rmse_m(&self) -> f64 {
         self.squares[0].sqrt()
     }
 
-    /// That over the root mean square of the standard deviations.
+    /// The root mean square error over the root mean square of the standard deviations.
     pub(crate) fn ratio(&self) -> f64 {
         (self.squares[0] / self.squares[1]).sqrt()
     }
 
-    /// Each recording alike.
+    /// Averages recordings with equal weight.
     pub(crate) fn together(all: &[Self]) -> Self {
         let of = |part: fn(&Self) -> f64| mean(&all.iter().map(part).collect::<Vec<_>>());
         Self { squares: [of(|it| it.squares[0]), of(|it| it.squares[1])], held: of(|it| it.held) }
@@ -80,13 +80,14 @@ impl Told {
         assert!((0.8..0.98).contains(&self.held), "{}", self.held);
     }
 
-    /// Of epochs of each part.
+    /// Evaluates the epochs of each part.
     pub(crate) fn of_parts(recording: &robot::Recording, parts: &[&[Epoch]]) -> Self {
         let (mut errors, mut sigmas, mut held) = (Vec::new(), Vec::new(), Vec::new());
         for (part, epochs) in recording.parts.iter().zip(parts) {
-            // Of a tag put down what counts is the last position.
+            // For a tag that was put down only the last position counts.
             let last = if recording.is_static() { epochs.len().saturating_sub(1) } else { 0 };
-            // Where the ranges allow two places, the deviation is of both: larger than the error at one of them.
+            // Where the ranges allow two positions, the standard deviation covers both: it is larger than the error at
+            // one of them.
             for epoch in epochs[last..].iter().filter(|epoch| epoch.mirror.is_none()) {
                 let truth = part.truth.as_ref().and_then(|truth| truth.at(epoch.time_us));
                 let Some(((position, [xx, xy, yy]), truth)) =
@@ -111,7 +112,7 @@ impl Told {
     }
 }
 
-/// A recording as `host-sim replay robot` reads it, at the true height, and what is known beforehand.
+/// A recording as `host-sim replay robot` reads it, at the true height, with what is known beforehand.
 pub(crate) fn opened(folder: &Path, name: &str, dimensions: &str) -> (robot::Recording, Setup) {
     let folder = folder.join(name);
     let mut files = Files::default();
@@ -139,7 +140,7 @@ pub(crate) fn opened(folder: &Path, name: &str, dimensions: &str) -> (robot::Rec
     (recording, setup)
 }
 
-/// Tracks a recording.
+/// Tracks a recording and evaluates it.
 fn told(folder: &Path, name: &str, dimensions: &str, biases: Option<Vec<f64>>) -> Told {
     let (recording, mut setup) = opened(folder, name, dimensions);
     setup.biases = biases.or(setup.biases);
@@ -168,11 +169,12 @@ fn standard_deviations_are_honest() {
     let all: Vec<Told> = moving.into_iter().chain(standing).collect();
     let class = Told::together(&all);
     class.print("all, together");
-    // Of three anchors that are not calibrated nothing tells what all measure too long, which happens to be little.
+    // With three uncalibrated anchors nothing determines their common bias, which happens to be small.
     for (told, least) in [(together, 0.68), (stood, 0.7), (class, 0.7)] {
         told.assert_honest(least);
     }
-    // Below 0.3 is `esp32_los2`, where the tag stands at two places: three anchors, whose ranges happen to be true.
+    // The one below 0.3 is `esp32_los2`, where the tag stands at two places: three anchors, whose ranges happen to be
+    // right.
     let names = MOVING.iter().chain(&STANDING);
     for ((name, _), told) in names.zip(&all) {
         assert!((0.2..2.5).contains(&told.ratio()), "{name}: {}", told.ratio());

@@ -1,7 +1,8 @@
-//! Recorded ranges, smoothed: where the tag was, given what was measured before and after. Anchors are not calibrated.
+//! Recorded ranges, smoothed: the positions of the tag, given the measurements before and after. Anchors are not
+//! calibrated.
 //!
-//! The recordings stand beside the repository in `../shared/data/robot`. Where they are absent these tests say
-//! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
+//! The recordings are in `../shared/data/robot`, beside the repository. Where they are absent these tests print SKIPPED
+//! and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
 use host_sim::metrics::mean;
 use host_sim::systems::robot::recording::{Part, Recording, Truth};
@@ -11,8 +12,8 @@ use kestirim_tests::recordings::folder_of;
 
 use crate::robot_sigmas::{MOVING, STANDING, Told, opened};
 
-/// What is asked of each recording's positions, root mean square, m: the published goal where there is one, and else what was
-/// measured and a tenth more. Every one is below the tracker's, but of those that stand.
+/// The largest accepted root mean square error of each recording's positions, m: the published goal where there is one,
+/// else a tenth more than was measured. All are below the tracker's, except for recordings of a stationary tag.
 const GOALS: [(&str, f64); 13] = [
     ("plaza1", 0.25),
     ("labyrinth", 0.06),
@@ -29,8 +30,9 @@ const GOALS: [(&str, f64); 13] = [
     ("lias_static_814", 0.07),
 ];
 
-/// What the smoother leaves to the tracker: three anchors of which mostly one is heard, or none without a wall before it; and
-/// a tag that stands among four, with a person before one or two of them, of whom nothing tells the anchors' own errors.
+/// Recordings that the smoother leaves to the tracker: three anchors of which mostly only one is received, or none
+/// without a wall before it; and a tag that stands among four anchors, with a person before one or two of them, where
+/// nothing determines the anchors' own biases.
 const LEFT: [(&str, Unsmoothed); 6] = [
     ("esp32_nlos1", Unsmoothed::CommonBias),
     ("esp32_wall2", Unsmoothed::CommonBias),
@@ -76,7 +78,7 @@ fn recordings_are_nearer_the_truth_and_say_how_near() {
     assert!((0.7..1.5).contains(&together.ratio()), "{}", together.ratio());
 }
 
-/// Without wheels the tracker hardly follows the mower: each anchor is heard every two seconds.
+/// Without wheels the tracker hardly follows the mower: each anchor is received every two seconds.
 #[test]
 fn a_mower_is_found_without_its_wheels() {
     let Some(folder) = folder_of("robot") else { return };
@@ -95,8 +97,8 @@ fn a_mower_is_found_without_its_wheels() {
     assert!(smoothed.rmse_m() <= 0.6, "{} m", smoothed.rmse_m());
 }
 
-/// Of the two outdoors the truth is the cones that were walked to, and the times are noted by hand: what counts is the
-/// distance to the line between them.
+/// In the two outdoor recordings the truth consists of the cones that were walked to, with times noted by hand: what
+/// counts is the distance to the line between them.
 #[test]
 fn a_walk_between_cones_is_found_with_one_beacon_blocked() {
     for (name, goal) in [("outdoor_blocked", 0.35), ("outdoor_square", 0.25)] {
@@ -108,8 +110,8 @@ fn a_walk_between_cones_is_found_with_one_beacon_blocked() {
     }
 }
 
-/// The last place of what came in `seconds`, as the smoother has it of these alone, at sixty times of each part: what a
-/// window with its models would say while the tag moves.
+/// The last position from the measurements of a window of `seconds`, smoothed alone, at sixty times of each part: what
+/// a window with the smoother's models would estimate while the tag moves.
 #[test]
 #[ignore = "a measurement: cargo test -p kestirim-tests --test all robot_smoothed::causal -- --ignored --nocapture"]
 fn causal_windows_are_no_nearer_than_the_tracker() {
@@ -136,10 +138,10 @@ fn causal_windows_are_no_nearer_than_the_tracker() {
     assert!(window > 1.05 * tracked && all > 0.95 * tracked, "a window pays now");
 }
 
-/// Squared errors of the tracker's last place and of the smoother's, or again the tracker's where that has none, at the ends
-/// of stretches of so many seconds.
+/// The squared errors of the tracker's last position and of the smoother's (or the tracker's again where that has
+/// none), at the ends of stretches of `seconds` seconds.
 fn at_ends(setup: &Setup, part: &Part, trace: &Trace, seconds: f64) -> Vec<[f64; 2]> {
-    // Of every epoch: its time, and how many events and ranges came up to its end.
+    // For each epoch: its time, and the numbers of events and ranges up to its end.
     let (mut ends, mut ranges) = (Vec::new(), 0);
     for (index, event) in part.events.iter().enumerate() {
         match event {
@@ -168,7 +170,7 @@ fn at_ends(setup: &Setup, part: &Part, trace: &Trace, seconds: f64) -> Vec<[f64;
     (1..=60).filter_map(|k| stretch((k * count / 60).checked_sub(1)?)).collect()
 }
 
-/// Root mean square distance (m) to the line between the places of a truth within five seconds.
+/// The root mean square distance (m) to the line between the true positions within five seconds.
 fn across(epochs: &[Epoch], truth: &Course<2>) -> f64 {
     let rows = truth.rows();
     let times = rows[0].0..=rows[rows.len() - 1].0;

@@ -1,4 +1,4 @@
-//! The book's tables: every tracker on every group of recordings, and what half and twice of each constant does.
+//! The book's tables: every tracker on every group of recordings, and the effect of halving and doubling each constant.
 //!
 //! `cargo test --release -p kestirim-tests --test all robot_table:: -- --ignored --nocapture`
 
@@ -38,7 +38,7 @@ impl Data {
         }
     }
 
-    /// Errors in cm, in the order of the table's columns.
+    /// The errors in cm, in the order of the table's columns.
     fn row(&self, folder: &Path, method: Method) -> Vec<f64> {
         let rmse = |recording: &Recording, biases: Option<&Vec<f64>>| {
             recording.track(method, biases.cloned()).0.rmse_m
@@ -97,7 +97,7 @@ fn learning(change: impl FnOnce([f64; 3]) -> [f64; 3], least: f64) -> Option<Lea
     Learning::new(forgetting, least, most).ok()
 }
 
-/// The least variance of calibrated anchors; others have four times as much.
+/// The least variance of ranges of calibrated anchors; others have four times as much.
 const LEAST: f64 = 0.0025;
 
 #[test]

@@ -1,7 +1,8 @@
-//! Rooms in which all anchors but two fall silent after a third of the recording. With `--nocapture` each pair is printed.
+//! Rooms in which all anchors but two fall silent after a third of the recording. With `--nocapture` each pair is
+//! printed.
 //!
-//! The recordings stand beside the repository in `../shared/data/robot`. Where they are absent these tests say
-//! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead.
+//! The recordings are in `../shared/data/robot`, beside the repository. Where they are absent these tests print SKIPPED
+//! and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead.
 
 use host_sim::system::HealthState;
 use host_sim::systems::robot::{recording::Recording, track};
@@ -11,11 +12,11 @@ use kestirim_tests::recordings::folder_of;
 use crate::robot_sigmas::opened;
 
 const ROOMS: [&str; 5] = ["lias_mid_tag0", "trek_4vba1", "trek_m2r", "esp32_los2", "isas_walk1"];
-/// Of the pairs of a room no more are tried.
+/// The largest number of pairs that are tried in a room.
 const MOST_PAIRS: usize = 7;
 
-/// Share of the positions that are more than three deviations off although nothing speaks against them, and of those against
-/// which nothing speaks.
+/// The share of positions that are off by more than three standard deviations although they are reported as good, and
+/// the share of those reported as good.
 struct Told {
     silent: f64,
     good: f64,

@@ -1,8 +1,8 @@
 //! The programs of `panic_free.rs` call everything: each public function, method and trait of each `no_std` crate, as
-//! the sources have them, is called by its path (`Gaussian::update(…)`) in the crate's program; a trait's function by
+//! found in the sources, is called by its path (`Gaussian::update(…)`) in the crate's program; a trait's function by
 //! its type's path, or by the trait's in a program that names the type.
 //!
-//! What derives provide (`Clone`, `PartialEq`, serde, defmt) is not asked for: it has no code of ours.
+//! Derived functions (`Clone`, `PartialEq`, serde, defmt) are not required: they contain no code of ours.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -12,12 +12,12 @@ use anyhow::{Context, Result};
 use syn::visit::{self, Visit};
 use syn::{Attribute, ImplItem, Item, TraitItem, Type, UseTree, Visibility};
 
-/// Traits that need not be called: texts for people, by way of `core::fmt`, which has panics of its own, and what is stored, an
-/// optional feature that no program here has.
+/// Traits that need not be called: human-readable text by way of `core::fmt`, which has panics of its own, and
+/// serialisation, an optional feature that no program here has.
 const NOT_ASKED_FOR: [&str; 6] =
     ["Debug", "Deserialize", "Display", "Error", "Format", "Serialize"];
 
-/// Macros by which crates define items: this test does not see what they expand to.
+/// Macros with which crates define items: this test does not see their expansion.
 const MACROS: [(&str, &str); 9] = [
     ("begun", "of a type that is not public"),
     ("collection", "the same"),
@@ -30,7 +30,7 @@ const MACROS: [(&str, &str); 9] = [
     ("messages", "plain data, and its `From`s"),
 ];
 
-/// Functions of C's, which C programs call: crates/c/tests/c links them and looks for panics.
+/// The crate whose functions are called from C programs: crates/c/tests/c links them and looks for panics.
 const CALLED_FROM_C: &str = "c";
 
 /// A function that must be called.
@@ -39,11 +39,11 @@ struct Wanted {
     /// The type or trait it belongs to; empty for a free function.
     of: String,
     name: String,
-    /// The trait that asks for it.
+    /// The trait that declares it.
     by: Option<String>,
 }
 
-/// What a crate offers.
+/// The public functions of a crate.
 #[derive(Default)]
 struct Offer {
     exported: BTreeSet<String>,
@@ -52,7 +52,7 @@ struct Offer {
     macros: BTreeSet<String>,
 }
 
-/// What a program calls: the last two names of paths.
+/// The calls of a program: the last two names of paths.
 #[derive(Default)]
 struct Calls {
     called: BTreeSet<(String, String)>,
@@ -86,7 +86,8 @@ fn is_public(visibility: &Visibility) -> bool {
     matches!(visibility, Visibility::Public(_))
 }
 
-/// What only a stored estimator has: an optional feature that no program here has. `tests/all/snapshots` calls it.
+/// Whether an item only exists with the optional feature of stored estimators, which no program here has.
+/// `tests/all/snapshots` calls these.
 fn is_stored(attributes: &[Attribute]) -> bool {
     let feature = |attribute: &Attribute| {
         let condition = attribute.parse_args::<syn::MetaNameValue>();
@@ -218,7 +219,7 @@ impl Offer {
 }
 
 impl Calls {
-    /// What is called of a crate.
+    /// The calls of a crate's program.
     fn of(name: &str) -> Result<Self> {
         let directory = workspace().join("tests/firmware/surface/src");
         let name = name.replace('-', "_");
@@ -231,7 +232,7 @@ impl Calls {
         Ok(calls)
     }
 
-    /// Whether a function is called: as its type's, or as its trait's by a program that names the type.
+    /// Whether a function is called: by its type's path, or by its trait's in a program that names the type.
     fn have(&self, wanted: &Wanted) -> bool {
         let called = |of: &String| self.called.contains(&(of.clone(), wanted.name.clone()));
         called(&wanted.of)
@@ -253,7 +254,7 @@ impl<'ast> Visit<'ast> for Calls {
     }
 
     fn visit_item_use(&mut self, _: &'ast syn::ItemUse) {
-        // An import is no use.
+        // An import is not a use.
     }
 
     fn visit_ident(&mut self, name: &'ast syn::Ident) {
@@ -261,7 +262,7 @@ impl<'ast> Visit<'ast> for Calls {
     }
 }
 
-/// Whether a crate is for targets. One that needs `std` has no program: none could link it.
+/// Whether a crate is for bare-metal targets. One that needs `std` has no program, as none could link it.
 fn is_no_std(name: &str) -> Result<bool> {
     let root = parsed(&workspace().join("crates").join(name).join("src/lib.rs"))?;
     Ok(root.attrs.iter().any(|attribute| attribute.path().is_ident("no_std")))

@@ -1,7 +1,7 @@
-//! What the estimators cost on bare metal: the bars of the common scenario, beside the peers, and against
-//! the baseline that is kept.
+//! The costs of the estimators on bare metal: limits for the common scenario, and comparisons with the peers and with
+//! the recorded baseline.
 //!
-//! On a machine without the tools these tests say SKIPPED and pass; with
+//! On a machine without the tools these tests print SKIPPED and pass; with
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. `cargo run --release -p target-bench` prints the table.
 
 use std::collections::BTreeMap;
@@ -15,7 +15,7 @@ use target_bench::{
     CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Row, TARGETS, Target, is_short, workloads,
 };
 
-/// Everything that was measured, and by what compilers: nothing without the tools, less in the short form.
+/// All measured rows, and the compilers: empty without the tools, fewer in the short form.
 type Measured = (Vec<Row>, BTreeMap<String, String>);
 
 fn measure() -> Result<Measured> {
@@ -71,7 +71,8 @@ fn nothing_costs_more_than_it_did() -> Result<()> {
     Ok(())
 }
 
-/// Whoever has time for an estimator has time for each of its steps: first positions and alignments are spread.
+/// A system with time for an estimator's mean step has time for each of its steps: first positions and alignments are
+/// spread over several.
 #[test]
 fn no_step_is_longer_than_ten_means() {
     let (rows, _) = measured();
@@ -130,7 +131,7 @@ fn single_precision_without_a_unit_for_it_is_within_its_bars() {
     }
 }
 
-/// Everywhere more; almost twice as many in single precision at opt-level 3.
+/// The peers take more everywhere; almost twice as many in single precision at opt-level 3.
 #[test]
 fn peers_take_more_instructions() {
     if is_short() {
@@ -162,7 +163,7 @@ fn peers_take_more_instructions() {
     }
 }
 
-/// Otherwise their cost would say nothing.
+/// If the peers' states differed, their costs would not be comparable.
 #[test]
 fn peers_find_the_same_states() -> Result<()> {
     let common = Common::read()?;
@@ -172,7 +173,7 @@ fn peers_find_the_same_states() -> Result<()> {
         ("peer-adskalman-f32", 1e-4),
         ("peer-kfilter-f32", 1e-4),
         ("peer-minikalman-f32", 1e-4),
-        // They round each product.
+        // It rounds each product.
         ("peer-minikalman-q16-16", 0.05),
     ];
     for (peer, tolerance) in peers {

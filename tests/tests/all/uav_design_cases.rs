@@ -1,4 +1,4 @@
-//! The designs of `../shared/data/uav/cases.json`, whose answers are known to 60 digits.
+//! The designs of `../shared/data/uav/cases.json`, whose solutions are known to 60 digits.
 
 use std::path::PathBuf;
 
@@ -23,7 +23,7 @@ fn section<'a>(cases: &'a Value, name: &str) -> &'a [Value] {
     cases[name].as_array().expect("a list of cases")
 }
 
-/// Each case of a section beside its answer.
+/// Each case of a section with its answer.
 fn answered<'a>(cases: &'a Value, report: &'a Report, name: &str) -> Vec<(&'a Value, &'a Answer)> {
     let (_, answers) =
         report.sections.iter().find(|(section, _)| *section == name).expect("the section");
@@ -44,7 +44,7 @@ fn sized<const R: usize, const C: usize>(value: &Value) -> SMatrix<f64, R, C> {
     SMatrix::from_fn(|row, column| matrix[(row, column)])
 }
 
-/// How far two matrices are apart, beside the size of the second.
+/// The distance between two matrices, relative to the norm of the second.
 fn apart(found: &DMatrix<f64>, expected: &DMatrix<f64>) -> f64 {
     (found - expected).norm() / expected.norm()
 }
@@ -64,7 +64,7 @@ fn poles_are_placed() {
         let Answer::Solved(Solution::Gain { gain, pole_error, .. }) = answer else {
             panic!("{}: {answer:?}", case["id"]);
         };
-        // With one output the gain is unique: it is as good as the exact one, rounded.
+        // With one output the gain is unique: it equals the exact one up to rounding.
         if case["exact_L_60digit"].is_object() {
             let exact = matrix(&case["exact_L_60digit"]["L"]);
             assert!(apart(gain, &exact) <= 1e-14, "{}: {gain} instead of {exact}", case["id"]);
@@ -142,7 +142,7 @@ fn states_that_are_not_measured_get_the_poles_that_were_asked_for() {
             panic!("{}", case["id"])
         };
         assert!(*pole_error <= 1e-12, "{}: {pole_error:e}", case["id"]);
-        // Looked at from outside: [α, q] are not measured, [V, θ] are.
+        // An independent check: [α, q] are not measured, [V, θ] are.
         let a = matrix(&case["A"]);
         let dynamics = a.view((0, 0), (2, 2)) - gain * a.view((2, 0), (2, 2));
         let dynamics = SMatrix::<f64, 2, 2>::from_fn(|row, column| dynamics[(row, column)]);

@@ -1,6 +1,6 @@
-//! The aeroplane's observers designed on emulated boards: the very gains that the host finds.
+//! The aeroplane's observers designed on emulated boards: bit for bit the gains that the host finds.
 //!
-//! On a machine without the tools these tests say SKIPPED and pass; with
+//! On a machine without the tools these tests print SKIPPED and pass; with
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print the table of costs.
 
 use anyhow::{Context, Result};
@@ -9,7 +9,7 @@ use kestirim_tests::design;
 use nalgebra::SMatrix;
 use target_bench::{CORTEX_M4F, Images, Output, Profile, RV32IMC, Target};
 
-/// What a design may cost at most: its name, millions of instructions, bytes of stack.
+/// The largest accepted cost of each design: its name, millions of instructions, bytes of stack.
 const BUDGETS: [(&str, u64, i64); 3] =
     [("zero_order_hold", 6, 6 << 10), ("place", 110, 22 << 10), ("riccati", 95, 22 << 10)];
 

@@ -1,4 +1,4 @@
-//! The flights of `host-sim run uav` beside those of `../shared/data/uav/cases.json`.
+//! The flights of `host-sim run uav`, compared with those of `../shared/data/uav/cases.json`.
 
 use host_sim::random::stream;
 use host_sim::systems::uav::paper::responses::responses;
@@ -68,7 +68,8 @@ fn steps_settle_when_the_reference_does() {
     }
 }
 
-/// The most doublings over all aircraft at 1 kHz, noise on the inputs 1e-4 to 1e4 times that on the outputs.
+/// The largest number of doublings over all aircraft at 1 kHz, with noise on the inputs of 1e-4 to 1e4 times that on
+/// the outputs.
 fn most_doublings<const P: usize>(c: &SMatrix<f64, P, 4>) -> u32 {
     let ratios = (-4..=4).map(|power| 10.0_f64.powi(power));
     let cells = ratios.flat_map(|ratio| {

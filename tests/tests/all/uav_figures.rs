@@ -1,4 +1,4 @@
-//! The book's figures of the UAV, which are some of the report's.
+//! The book's figures of the UAV, a selection from the report.
 //!
 //! `cargo test --release -p kestirim-tests --test all uav_figures:: -- --ignored`
 

@@ -1,14 +1,14 @@
-//! Derivatives of a recorded flight beside those of another method.
+//! Derivatives of a recorded flight, compared with those of another method.
 //!
-//! `attas_elv1` stands beside the repository in `../shared/data/uav/flights`. Where it is absent this test says SKIPPED.
+//! `attas_elv1` is in `../shared/data/uav/flights`, beside the repository. Where it is absent this test prints SKIPPED.
 
 use host_sim::systems::uav::identify::flight;
 use kestirim_tests::recordings::folder_of;
 use kestirim_uav_identification::identify;
 
-/// Equation error in the frequency domain (Morelli), by `NumPy`: q̇ and az/V of α, q and δe at 0.08 to 1.2 Hz, slopes as jω after a
-/// straight line through the ends is taken away; α moved to the centre of mass by the vane's lead of 0.1029 s. No filter, no
-/// prior, no az in the first three; no common code.
+/// The equation error in the frequency domain (Morelli), computed with `NumPy`: q̇ and az/V from α, q and δe at 0.08 to
+/// 1.2 Hz, slopes as jω after subtracting a straight line through the ends; α moved to the centre of mass by the vane's
+/// lead of 0.1029 s. No filter, no prior, no az in the first three; no common code.
 const INDEPENDENT: [(&str, f64); 6] = [
     ("M_alpha", -4.9103),
     ("M_q", -1.4697),

@@ -1,4 +1,4 @@
-//! What comes of the thesis' formulas as they are printed: the book's proofs that they are misprints.
+//! The consequences of the thesis' formulas as printed: the book's proofs that they are misprints.
 
 use host_sim::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, START};
 use kestirim_observer_design::{eigenvalues, riccati, zero_order_hold};
@@ -6,7 +6,7 @@ use kestirim_replay::uav::{Noise, Plant};
 use kestirim_uav_longitudinal::{Airframe, SteadyFlight, full_state};
 use nalgebra::{Matrix4, RowVector4, SVector, Vector3};
 
-/// (3.4.1): Zα and Mα where Zα̇ and Mα̇ belong make two real modes of the short period.
+/// (3.4.1): Zα and Mα, where Zα̇ and Mα̇ belong, make two real modes of the short period.
 #[test]
 fn the_matrix_e_takes_derivatives_by_the_rate() {
     let aerosonde = Airframe::aerosonde();
@@ -36,7 +36,7 @@ fn the_matrix_e_takes_derivatives_by_the_rate() {
     );
 }
 
-/// (3.1.25): the row of the way east is no row of a rotation.
+/// (3.1.25): the row for the eastward velocity is not a row of a rotation matrix.
 #[test]
 fn a_row_of_a_rotation_has_length_one() {
     let [(sin_phi, cos_phi), (sin_theta, cos_theta), (sin_psi, cos_psi)] =
@@ -56,7 +56,7 @@ fn a_row_of_a_rotation_has_length_one() {
     assert!((printed.norm() - 1.0).abs() > 0.01);
 }
 
-/// (4.6): y of one sample and x̂ of the one before it make an error of none.
+/// (4.6): pairing y of one sample with x̂ of the one before creates an error where there is none.
 #[test]
 fn the_update_pairs_samples_that_are_not_of_one_time() {
     let plant = Plant::P2.discrete(INTERVAL_S);
@@ -86,7 +86,7 @@ fn the_covariance_update_lacks_what_it_divides_by() {
     assert!(printed[(2, 2)] < -500.0);
 }
 
-/// The determinant of the observability matrix: all but zero for an aircraft whose every mode is seen.
+/// The determinant of the observability matrix is nearly zero for an aircraft whose every mode is observable.
 #[test]
 fn a_determinant_is_no_test() {
     let theta = RowVector4::new(0.0, 0.0, 0.0, 1.0);

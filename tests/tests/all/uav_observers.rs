@@ -1,7 +1,7 @@
-//! The observers against trajectories and matrices computed elsewhere with 60 digits.
+//! The observers, compared with trajectories and matrices computed elsewhere with 60 digits.
 //!
-//! They stand beside the repository in `../shared/data/uav/cases.json`. Where it is absent these tests say SKIPPED
-//! and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead.
+//! They are in `../shared/data/uav/cases.json`, beside the repository. Where it is absent these tests print SKIPPED and
+//! pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead.
 
 use kestirim_luenberger::{
     CurrentGains, CurrentObserver, Plant, Predictor, PredictorGains, ReducedGains, ReducedObserver,
@@ -10,7 +10,7 @@ use kestirim_tests::recordings::folder_of;
 use nalgebra::{SMatrix, SVector};
 use serde_json::Value;
 
-/// Of the trajectories (SI units and radians).
+/// The accepted difference of the trajectories (SI units and radians).
 const SAME: f64 = 1e-11;
 
 fn cases(section: &str) -> Vec<Value> {
@@ -31,7 +31,7 @@ fn vector<const N: usize>(case: &Value, name: &str) -> SVector<f64, N> {
     SVector::from_column_slice(&numbers)
 }
 
-/// The generator of the cases: twelve uniform numbers make a normal one.
+/// The generator of the cases: a normal number is the sum of twelve uniform ones.
 struct Noise(u32);
 
 impl Noise {
@@ -102,7 +102,7 @@ fn trajectories_are_reproduced() {
     }
 }
 
-/// What one step makes of a unit, with everything else zero, is a column of F, G or H.
+/// The response of one step to a unit, with everything else zero, is a column of F, G or H.
 #[test]
 fn the_reduced_observer_has_its_reference_matrices() {
     for case in cases("reduced_order") {

@@ -1,6 +1,6 @@
-//! How far observers in `f32` and fixed point are from those in `f64`, as a fraction of what the latter are from
-//! the truth: the aeroplane with noise on inputs and outputs, placed poles and settled Kalman gains, two
-//! sets of sensors, 100 Hz and 1 kHz.
+//! The deviation of observers in `f32` and fixed point from those in `f64`, as a fraction of the error of the latter:
+//! the aeroplane with noise on inputs and outputs, placed poles and steady-state Kalman gains, two sets of sensors, 100
+//! Hz and 1 kHz.
 
 use host_sim::random::{normal, stream};
 use kestirim_kalman::{Covariance, steady_state};
@@ -9,15 +9,15 @@ use kestirim_scalar::{Components, Q16_16, Scalar};
 use kestirim_tests::uav;
 use nalgebra::{Matrix4, SMatrix, SVector};
 
-/// Noise of the inputs (rad, throttle) and of the states as measured (rad, rad/s, m/s, rad).
+/// The noise of the inputs (rad, throttle) and of the measured states (rad, rad/s, m/s, rad), as standard deviations.
 const INPUT_SIGMAS: [f64; 2] = [0.008_726_646_259_971_648, 0.02];
 const STATE_SIGMAS: [f64; 4] =
     [0.008_726_646_259_971_648, 0.008_726_646_259_971_648, 0.5, 0.008_726_646_259_971_648];
 
-/// Samples of a flight: inputs as commanded, outputs as measured, states as they were.
+/// Samples of a flight: commanded inputs, measured outputs, true states.
 type Flight<const P: usize> = Vec<(SVector<f64, 2>, SVector<f64, P>, SVector<f64, 4>)>;
 
-/// A minute, and half of one before in which the observers settle.
+/// A flight of a minute, after half a minute in which the observers converge.
 fn fly<const P: usize>(plant: &Plant<4, 2, P>, interval: f64, sine: bool) -> Flight<P> {
     let mut rng = stream(5, 0);
     let mut state = SVector::from([0.0, 0.0, 40.0, 0.53]);
@@ -37,7 +37,7 @@ fn fly<const P: usize>(plant: &Plant<4, 2, P>, interval: f64, sine: bool) -> Fli
     (0..(90.0 / interval) as u32).map(moment).collect()
 }
 
-/// The estimates after half a minute.
+/// The estimates after the first half minute.
 type Estimates = Vec<SVector<f64, 4>>;
 
 fn settled(estimates: impl Iterator<Item = SVector<f64, 4>>, interval: f64) -> Estimates {
@@ -75,14 +75,14 @@ fn corrected<T: Scalar, const P: usize>(
     settled(estimates, interval)
 }
 
-/// Root mean square of each state's difference.
+/// The root mean square of each state's difference.
 fn apart(a: &[SVector<f64, 4>], b: &[SVector<f64, 4>]) -> SVector<f64, 4> {
     let sum: SVector<f64, 4> =
         a.iter().zip(b).map(|(a, b)| (a - b).map(|difference| difference.powi(2))).sum();
     sum.map(|sum| (sum / a.len() as f64).sqrt())
 }
 
-/// Prints and checks the fractions that `f32` and Q16.16 differ.
+/// Prints and checks the fractions by which `f32` and Q16.16 differ.
 fn check(what: &str, truth: &Estimates, [double, single, fixed]: [Estimates; 3], most: [f64; 2]) {
     let error = apart(&double, truth);
     let fractions = [single, fixed].map(|other| apart(&other, &double).component_div(&error));
@@ -93,7 +93,7 @@ fn check(what: &str, truth: &Estimates, [double, single, fixed]: [Estimates; 3],
     }
 }
 
-/// The gain that places the poles, the interval and the name of the sensors' set.
+/// Compares the gain that places the poles and the steady-state Kalman gain.
 fn compare<const P: usize>(
     plant: &Plant<4, 2, P>,
     placed: &SMatrix<f64, 4, P>,

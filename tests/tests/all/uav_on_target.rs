@@ -12,7 +12,7 @@ use target_bench::{
     CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Row, Target, augmented_model, uav,
 };
 
-/// The bits of the estimate after every fifty samples, as the image computes it.
+/// The bits of the estimate after every fifty samples, as the image computes them.
 fn estimates<T: Scalar>(flight: &Flight, interval: f64) -> Vec<[i64; 4]> {
     let start = SVector::from(uav::START.map(T::from_f32));
     let mut observer = Predictor::<T, 4, 2, 3>::new(&uav::gains(interval), &start).expect("gains");
@@ -25,7 +25,7 @@ fn estimates<T: Scalar>(flight: &Flight, interval: f64) -> Vec<[i64; 4]> {
     states.chunks_exact(50).map(|chunk| chunk[49]).collect()
 }
 
-/// Runs an image, compares its states with the host's, and answers with the instructions of the longest step.
+/// Runs an image, compares its states with the host's, and returns the number of instructions of the longest step.
 fn agree(images: &Images, image: &str, flight: &Flight, host: &[[i64; 4]]) -> Result<u64> {
     let output = images.run(image, &flight.encode())?;
     println!("{}", Row::of(images, image, &output)?);
@@ -36,7 +36,7 @@ fn agree(images: &Images, image: &str, flight: &Flight, host: &[[i64; 4]]) -> Re
     Ok(cost.max)
 }
 
-/// Instructions of the longest step, in `f32` and in fixed point.
+/// The instructions of the longest step, in `f32` and in fixed point.
 fn costs(target: &'static Target) -> Result<Option<[u64; 2]>> {
     let Some(images) = Images::of(target, Profile::Speed)? else { return Ok(None) };
     let mut longest = [0; 2];
@@ -58,7 +58,7 @@ fn costs(target: &'static Target) -> Result<Option<[u64; 2]>> {
     Ok(Some(longest))
 }
 
-/// The filter with gusts and biases: the very bits of the host, within its budget.
+/// The filter with gusts and biases: bit for bit the host's states, within its budget.
 #[test]
 fn a_filter_of_nine_states_on_a_cortex_m4f() -> Result<()> {
     let Some(images) = Images::of(&CORTEX_M4F, Profile::Speed)? else { return Ok(()) };
@@ -77,7 +77,7 @@ fn a_filter_of_nine_states_on_a_cortex_m4f() -> Result<()> {
 #[test]
 fn cortex_m0() -> Result<()> {
     if let Some([single, fixed]) = costs(&CORTEX_M0)? {
-        // With the compiler's arithmetic in place of `kestirim-arithmetic`'s it was 9,857 in `f32`.
+        // With the compiler's arithmetic instead of `kestirim-arithmetic`'s it was 9,857 in `f32`.
         assert!(single <= 3_900, "{single} instructions");
         assert!(fixed <= 1_500, "{fixed} instructions");
     }

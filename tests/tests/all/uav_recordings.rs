@@ -1,7 +1,7 @@
-//! Flights that a simulator and an airliner flew, by a filter of a model that another flight gave: a regression of the
+//! Flights of a simulator and of an airliner, filtered with a model identified from another flight: a regression of the
 //! derivatives and outputs on states and inputs, with the noise of usual sensors.
 //!
-//! They stand beside the repository in `../shared/data/uav/flights`. Where they are absent these tests say SKIPPED and
+//! They are in `../shared/data/uav/flights`, beside the repository. Where they are absent these tests print SKIPPED and
 //! pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each flight is printed.
 
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ use kestirim_uav_estimator::{Drift, Dynamics};
 use kestirim_uav_longitudinal::StateSpace;
 use nalgebra::{SMatrix, SVector};
 
-/// Columns of a flight.
+/// The columns of a flight, by name.
 type Flight = BTreeMap<String, Vec<f64>>;
 
 fn read(name: &str) -> Option<Flight> {
@@ -33,12 +33,12 @@ fn read(name: &str) -> Option<Flight> {
     Some(flight)
 }
 
-/// α, q, V, θ, δe, δt less those of the trim, and one.
+/// The deviations of α, q, V, θ, δe, δt from the trim, and a constant one.
 type Regressors = SVector<f64, 7>;
 
-/// What multiplies the regressors so that their sum is nearest to the values.
+/// The least-squares coefficients of the regressors.
 fn regression(rows: impl Iterator<Item = (Regressors, f64)>) -> Regressors {
-    // So little that only what is zero in every row notices: it has no part in the sum then.
+    // So small that it only affects regressors that are zero in every row: their coefficients become zero.
     let mut squares = SMatrix::<f64, 7, 7>::identity() * 1e-12;
     let mut products = Regressors::zeros();
     for (row, value) in rows {
@@ -48,19 +48,19 @@ fn regression(rows: impl Iterator<Item = (Regressors, f64)>) -> Regressors {
     squares.cholesky().expect("inputs that move everything").solve(&products)
 }
 
-/// What an aircraft's sensors are.
+/// The noise of an aircraft's sensors.
 struct Sensors {
-    /// Standard deviations of α, q, V, θ, az, qbar.
+    /// The standard deviations of α, q, V, θ, az, qbar.
     sigmas: [f64; 6],
-    /// Spectral density on the states' derivatives.
+    /// The spectral densities of the noise on the states' derivatives.
     process: [f64; 4],
 }
 
 const OUTPUTS: [&str; 6] = ["alpha", "q", "V", "theta", "az", "qbar"];
-/// As the data's README says them, and a vane of 5 mrad.
+/// The sensors that the data's README states, and a vane of 5 mrad.
 const USUAL: Sensors =
     Sensors { sigmas: [0.005, 0.003, 0.3, 0.003, 0.3, 8.0], process: [1e-8, 1e-5, 4e-4, 1e-9] };
-/// Those of the ATTAS, which are recorded with their noise.
+/// The sensors of the ATTAS, whose recordings contain their noise.
 const ATTAS: Sensors =
     Sensors { sigmas: [0.005, 0.002, 0.2, 0.002, 0.15, 20.0], process: [1e-5, 1e-4, 1e-2, 1e-7] };
 
@@ -68,7 +68,7 @@ const fn drift(sigma: f64, rate: f64) -> Drift {
     Drift { sigma, rate }
 }
 
-/// A model of what was flown, about the mean of the flight.
+/// A model identified from a flight, about the mean of the flight.
 fn identified(flight: &Flight, sensors: &Sensors) -> Model {
     let column = |name: &str| &flight[name];
     let mean = |name: &str| column(name).iter().sum::<f64>() / column(name).len() as f64;
@@ -93,7 +93,7 @@ fn identified(flight: &Flight, sensors: &Sensors) -> Model {
         }
         (b[(i, 0)], b[(i, 1)]) = (derivative[4], derivative[5]);
     }
-    // The specific force, of which the airspeed changes nothing but the dynamic pressure.
+    // The regression of the specific force, on which the airspeed only acts by the dynamic pressure.
     let force = regression((0..count).map(|k| {
         let (mut row, ratio) = (row(states(k), k), column("V")[k] / state[2]);
         row[2] = 0.0;
@@ -128,7 +128,7 @@ fn identified(flight: &Flight, sensors: &Sensors) -> Model {
     }
 }
 
-/// Gaussian numbers that look random.
+/// A generator of pseudo-random Gaussian numbers.
 struct Dice(u64);
 
 impl Dice {
@@ -144,7 +144,7 @@ impl Dice {
     }
 }
 
-/// Samples of some outputs, with noise of these standard deviations and what is added to each.
+/// Samples of some outputs, with noise of the given standard deviations and an offset added to each.
 fn log(
     model: &Model,
     flight: &Flight,
@@ -173,12 +173,12 @@ fn log(
 }
 
 struct Told {
-    /// Root mean square errors: mrad, mrad/s, m/s, mrad.
+    /// The root mean square errors: mrad, mrad/s, m/s, mrad.
     errors: [f64; 4],
     contradictions: usize,
 }
 
-/// Follows a flight, and prints how well.
+/// Filters a flight, and prints the errors.
 fn followed(label: &str, model: &Model, log: Log, flight: &Flight, options: &Options) -> Told {
     let deviations = Deviations::new(model.clone(), log, None, true).expect("a trim");
     let followed: Followed = deviations.follow(options).expect("an estimate");
@@ -215,14 +215,14 @@ fn a_light_aircraft_calm_in_turbulence_with_biases_and_with_less_throttle() {
             let told = followed(name, &model, log, &flight, &Options::default());
             assert!(told.errors[0] < alpha, "{name} {outputs:?} {added:?}: α {:?}", told.errors);
             assert!(told.errors[2] < airspeed, "{name} {outputs:?} {added:?}: V {:?}", told.errors);
-            // With less throttle az is farther from its trim than the model says, and that is told.
+            // With less throttle az is farther from its trim than the model predicts, which is reported.
             let may_be = usize::from(name == "slow");
             assert!(told.contradictions <= may_be, "{name} {outputs:?} {added:?}");
         }
     }
 }
 
-/// In fixed point, too: outputs that the log has not, and those that all eight places hold.
+/// In fixed point, too: outputs that the log lacks, and those that fill all eight places.
 #[test]
 fn fixed_point_holds_a_light_aircraft() {
     let Some(ident) = read("jsbsim_c172p_ident") else { return };
@@ -260,7 +260,7 @@ fn an_airliner_by_the_model_of_its_other_flight() {
     }
 }
 
-/// What `identify uav` finds from a flight with this noise, as `replay uav` reads it from a file.
+/// The model that `identify uav` finds from a flight with this noise, as `replay uav` reads it from a file.
 fn by_filter_error(name: &str, noise: Option<&Sensors>) -> Option<Model> {
     let path = folder_of("uav")?.join("flights").join(name).with_extension("csv");
     let mut flight = host_sim::systems::uav::identify::flight(&path).expect("a flight");

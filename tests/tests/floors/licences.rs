@@ -1,5 +1,5 @@
-//! What is linked may be given away under our licences, and comes from crates.io: as `deny.toml` has it, which
-//! `cargo deny` reads, too, for whoever has that program.
+//! All linked code may be distributed under our licences, and comes from crates.io, as `deny.toml` requires;
+//! `cargo deny` reads that file, too.
 
 use std::fs;
 
@@ -39,7 +39,7 @@ impl Allowed {
     }
 }
 
-/// The licence that a package names, or that its file begins with.
+/// The licence that a package declares, or with which its licence file begins.
 fn licence(package: &Package) -> Result<Option<String>> {
     if package.license.is_some() {
         return Ok(package.license.clone());

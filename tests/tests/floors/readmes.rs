@@ -1,5 +1,5 @@
-//! A crate's README is its documentation, on docs.rs and wherever else it is read: it has the sections that a user looks
-//! for, and every bracket in it leads to an item that exists.
+//! A crate's README is its documentation, on docs.rs and elsewhere: it has the sections that a user looks for, and
+//! every link in it leads to an item that exists.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -11,7 +11,7 @@ use syn::{ImplItem, Item, TraitItem, Visibility};
 
 use super::{crates, folder, metadata, published, root};
 
-/// The part of an address that all documentation on docs.rs has in common.
+/// The common prefix of all documentation addresses on docs.rs.
 const DOCS: &str = "https://docs.rs/";
 
 #[test]
@@ -55,7 +55,7 @@ fn every_bracket_of_a_readme_leads_somewhere() -> Result<()> {
     Ok(())
 }
 
-/// The book says where what it tells of is computed.
+/// The book names the files in which its results are computed.
 #[test]
 fn every_file_that_the_book_names_exists() -> Result<()> {
     let crates = fs::read_dir(root().join("crates"))?.collect::<Result<Vec<_>, _>>()?;
@@ -77,7 +77,7 @@ fn every_file_that_the_book_names_exists() -> Result<()> {
     Ok(())
 }
 
-/// `a/{b,c}.rs` as a shell has it.
+/// Expands `a/{b,c}.rs` as a shell does.
 fn alternatives(path: &str) -> Vec<String> {
     let parts = path.split_once('{').and_then(|(before, rest)| {
         let (of, after) = rest.split_once('}')?;
@@ -87,7 +87,7 @@ fn alternatives(path: &str) -> Vec<String> {
     of.split(',').flat_map(|one| alternatives(&format!("{before}{one}{after}"))).collect()
 }
 
-/// Whether words in code are the path of a source.
+/// Whether a code span is the path of a source file.
 fn is_source(words: &str) -> bool {
     let folder_of = words.strip_suffix(".rs").and_then(|path| path.split_once('/'));
     folder_of.is_some_and(|(folder, path)| {
@@ -95,7 +95,7 @@ fn is_source(words: &str) -> bool {
     })
 }
 
-/// Fails if nothing is where a link leads to that stands in a file of a folder, or in one without files around it.
+/// Fails if a link in a file leads nowhere; `folder` is that of the file, if files around it can be reached.
 fn check(
     folder: Option<&Path>,
     target: &str,
@@ -116,7 +116,7 @@ fn check(
     Ok(())
 }
 
-/// The links of a text, outside its code: what is between brackets, and where it leads to.
+/// The links of a text, outside its code: their labels and targets.
 fn links(text: &str) -> Result<Vec<(String, String)>> {
     let mut prose = String::new();
     let mut definitions = BTreeMap::new();
@@ -127,7 +127,7 @@ fn links(text: &str) -> Result<Vec<(String, String)>> {
         } else if let Some((label, target)) =
             line.strip_prefix('[').and_then(|line| line.split_once("]: https://"))
         {
-            // Labels that differ by capitals alone are the same one.
+            // Labels that differ only in case are the same.
             let before = definitions.insert(label.to_lowercase(), format!("https://{target}"));
             ensure!(before.is_none(), "[{label}] is defined twice");
         } else if !is_code {
@@ -164,7 +164,7 @@ fn links(text: &str) -> Result<Vec<(String, String)>> {
     Ok(links)
 }
 
-/// What the next brackets hold that are not in code, and what follows them.
+/// The contents of the next brackets outside of code, and the text behind them.
 fn next_bracket(text: &str) -> Result<Option<(&str, &str)>> {
     let mut is_code = false;
     let mut from = None;
@@ -187,7 +187,8 @@ fn items_of(package: &Package) -> Result<BTreeSet<String>> {
     let mut pages = BTreeSet::new();
     let mut anchors: Vec<(String, String)> = Vec::new();
     for file in rust_files(&source)? {
-        // What is re-exported at the root has its page there, what is in a public module in that module's folder.
+        // What is re-exported at the root has its page there; what is in a public module has it in that module's
+        // folder.
         let module = file.strip_prefix(&source)?.iter().next().context("a name")?;
         let module = module.to_string_lossy().replace(".rs", "");
         let at = if library.contains(&format!("pub mod {module};")) {

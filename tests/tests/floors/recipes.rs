@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 
 use super::root;
 
-/// Recipes, and the most files that each may change beside new ones.
+/// The recipes, and the largest number of existing files that each may change.
 const RECIPES: [(&str, usize); 5] = [
     ("A sixth system", 4),
     ("A sensor of the robot", 10),
@@ -15,7 +15,7 @@ const RECIPES: [(&str, usize); 5] = [
     ("A resampler", 4),
 ];
 
-/// A name that a contributor chooses.
+/// The placeholder for a name that a contributor chooses.
 const NAME: &str = "NAME";
 
 #[test]
@@ -24,7 +24,7 @@ fn every_file_that_it_names_exists() -> Result<()> {
     let paths: Vec<_> = text.lines().flat_map(paths).collect();
     assert!(!paths.is_empty());
     for path in paths {
-        // Of what is to be made, the folder exists.
+        // Of files that are to be created, the folder exists.
         let known = path.split_once(NAME).map_or(path, |(folder, _)| folder);
         assert!(root().join(known).exists(), "CONTRIBUTING.md: there is no {path}");
     }
@@ -45,7 +45,7 @@ fn a_recipe_changes_few_files() -> Result<()> {
     Ok(())
 }
 
-/// The paths from the root in the code of a line.
+/// The paths, relative to the root, in the code spans of a line.
 fn paths(line: &str) -> impl Iterator<Item = &str> {
     let code = line.split('`').skip(1).step_by(2);
     code.filter(|code| {

@@ -3,27 +3,27 @@ use kestirim_scalar::Scalar;
 use super::Supposition;
 use super::sight::{PATTERN_DB, Row, Sight, decibels, mean_square, used};
 
-/// Degrees of freedom of Student's distribution: tails as nulls of antennas and buildings make them.
+/// Degrees of freedom of Student's t-distribution, whose tails represent antenna nulls and buildings.
 const FREEDOM: f64 = 4.0;
-/// By how much a receiver's floor and its readings waver, dB.
+/// Scale of the fluctuations of a receiver's floor and of its readings, dB.
 const WAVERING_DB: f64 = 1.7;
-/// Steps of the fit, after which a further one moves no level by a tenth of a decibel.
+/// Number of steps of the fit, after which a further one changes no level by a tenth of a decibel.
 const STEPS: usize = 5;
-/// The level moves by no more in a step, dB.
+/// Largest change of the level in a step, dB.
 const LONGEST_DB: f64 = 10.0;
-/// So much above the floor a level is a signal's, dB.
+/// Levels this far above the floor count as signals, dB.
 const ABOVE_DB: f64 = 2.0;
-/// Fewer of these do not say where the fit begins.
+/// Least number of signals from which the fit is started; with fewer, all levels are used.
 const FEWEST: usize = 3;
-/// Powers that differ by e⁹ (39 dB) do not add anything to each other.
+/// Powers that differ by more than e⁹ (39 dB) are not added.
 const FARTHEST: f64 = 9.0;
 
-/// What a supposition and a place make of the measurements.
+/// The fit of the measurements under a supposition and a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GroundFit<T> {
-    /// ln ∫ likelihood · prior d(level, exponent, pattern), but for a constant that is the same everywhere.
+    /// ln ∫ likelihood · prior d(level, exponent, pattern), up to a constant that is the same everywhere.
     pub log_evidence: T,
     /// The level received at one metre, dB.
     pub level: T,
@@ -32,10 +32,10 @@ pub struct GroundFit<T> {
 }
 
 impl<T: Scalar> GroundFit<T> {
-    /// The level (dB) that a further measurement would show under the supposition of this fit, and its standard deviation:
-    /// `from` there, so high above the transmitter, if that is at `place`.
+    /// The level (dB), and its standard deviation, that a further measurement would show under the supposition of this
+    /// fit: `from` there, at `height` above the transmitter, if that is at `place`.
     ///
-    /// What the antennas do in that direction counts as noise: a fit does not tell it.
+    /// The antennas' gain in that direction counts as noise, since a fit does not provide it.
     pub fn expected(
         &self,
         supposition: &Supposition<T>,
@@ -54,8 +54,8 @@ impl<T: Scalar> GroundFit<T> {
 }
 
 impl<T: Scalar> Supposition<T> {
-    /// The level that a receiver shows of a signal, and by how much it changes with the signal: from zero in the floor to one
-    /// above it.
+    /// The level that a receiver shows for a signal, and its derivative with respect to the signal: from zero in the
+    /// floor to one above it.
     fn received(&self, signal: T) -> (T, T) {
         let (level, share) = match self.floor {
             Some(floor) => above(floor, signal),
@@ -68,7 +68,7 @@ impl<T: Scalar> Supposition<T> {
     }
 }
 
-/// Normal equations of a step.
+/// The normal equations of a step.
 struct Normal<T, const P: usize> {
     matrix: [[T; P]; P],
     vector: [T; P],
@@ -116,7 +116,7 @@ pub(super) fn fit<T: Scalar, const P: usize>(
     GroundFit { log_evidence, level, exponent }
 }
 
-/// By how much the signals are stronger than expected on average, dB.
+/// The mean excess of the signals over what is expected, dB.
 fn start<T: Scalar, const P: usize>(sight: &Sight<T, P>, supposition: &Supposition<T>) -> T {
     let is_signal = |row: &&Row<T, P>| {
         supposition.floor.is_none_or(|floor| row.level > floor + T::from_f64(ABOVE_DB))
@@ -133,15 +133,15 @@ fn start<T: Scalar, const P: usize>(sight: &Sight<T, P>, supposition: &Suppositi
     if count < FEWEST { mean(false).0 } else { of_signals }
 }
 
-/// A measurement beside what is expected of it.
+/// The residual of a measurement and its noise.
 struct Seen<T> {
-    /// Difference, dB.
+    /// The residual, dB.
     error: T,
-    /// By how much the level changes with the signal: from zero in the floor to one above it.
+    /// Derivative of the level with respect to the signal: from zero in the floor to one above it.
     share: T,
-    /// Square of the noise's scale, dB².
+    /// Square of the noise scale, dB².
     variance: T,
-    /// Square of the error in units of that.
+    /// Square of the residual in units of the variance.
     square: T,
 }
 
@@ -163,7 +163,7 @@ impl<T: Scalar> Seen<T> {
         Self { error, share, variance, square: error / variance * error }
     }
 
-    /// Without its constant.
+    /// The log-density up to a constant.
     fn log_density(&self) -> T {
         let freedom = T::from_f64(FREEDOM);
         let tail = (T::ONE + self.square / freedom).ln() * (freedom + T::ONE);
@@ -171,7 +171,7 @@ impl<T: Scalar> Seen<T> {
     }
 }
 
-/// The power of a signal and of a floor together, dB, and the signal's share in it.
+/// The combined power of a signal and a floor, dB, and the signal's share of it.
 fn above<T: Scalar>(floor: T, signal: T) -> (T, T) {
     let decibels = T::from_f64(10.0 / core::f64::consts::LN_10);
     let below = (floor - signal) / decibels;
@@ -186,7 +186,7 @@ fn above<T: Scalar>(floor: T, signal: T) -> (T, T) {
 }
 
 impl<T: Scalar, const P: usize> Normal<T, P> {
-    /// Of the prior alone: all parameters are 0 ± 1.
+    /// The equations of the prior alone: all parameters are 0 ± 1.
     fn new(used: usize, parameters: &[T; P]) -> Self {
         let vector = parameters.map(|parameter| -parameter);
         let mut matrix = [[T::ZERO; P]; P];
@@ -211,10 +211,10 @@ impl<T: Scalar, const P: usize> Normal<T, P> {
         }
     }
 
-    /// Cholesky's factor in the place of the matrix; half the logarithm of the determinant.
+    /// Replaces the matrix with its Cholesky factor; returns half the logarithm of its determinant.
     fn decompose(&mut self) -> T {
         let mut log_determinant = T::ZERO;
-        // Constant bounds, so that the compiler sees that no index is out of them.
+        // Constant bounds, so that the compiler can prove the indices valid.
         for row in 0..P {
             if row >= self.used {
                 break;
@@ -225,7 +225,7 @@ impl<T: Scalar, const P: usize> Normal<T, P> {
                     sum -= self.matrix[row][index] * self.matrix[column][index];
                 }
                 self.matrix[row][column] = if row == column {
-                    // The prior alone makes it one.
+                    // The prior alone makes it at least one.
                     let root = sum.max(T::HALF).sqrt();
                     log_determinant += root.ln();
                     root
@@ -237,7 +237,7 @@ impl<T: Scalar, const P: usize> Normal<T, P> {
         log_determinant
     }
 
-    /// The parameters' change, by the factor.
+    /// Solves for the change of the parameters with the Cholesky factor.
     fn solve(&self) -> [T; P] {
         let mut change = self.vector;
         for row in 0..P {
@@ -251,7 +251,7 @@ impl<T: Scalar, const P: usize> Normal<T, P> {
             change[row] = sum / self.matrix[row][row];
         }
         for row in (0..P).rev() {
-            // What is beyond those that are used is zero, and changes nothing.
+            // Entries beyond the used ones are zero, and have no effect.
             let mut sum = change[row];
             for index in row + 1..P {
                 sum -= self.matrix[index][row] * change[index];

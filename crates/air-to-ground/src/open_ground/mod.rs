@@ -11,51 +11,52 @@ use crate::{Heading, LevelPrior, Measurement};
 
 /// Largest number of measurements that are read.
 const MOST: usize = 128;
-/// Exponents of recorded links over open ground: 2 in free space, less above a reflecting ground, more along it.
+/// Mean and standard deviation of the path-loss exponent of recorded links over open ground: 2 in free space, less
+/// above a reflecting ground, more along it.
 const EXPONENT: [f64; 2] = [2.0, 0.6];
-/// Where the level is measured from if none is known before: the logarithms of a flight's distances are about this one,
-/// m, so that level and exponent are estimated nearly apart.
+/// Distance at which an unknown level is estimated, m: the distances of a flight are around it on a logarithmic scale,
+/// so that level and exponent are nearly uncorrelated.
 const REFERENCE_M: f64 = 50.0;
-/// Standard deviation of an unknown level about the mean of all that was received, dB.
+/// Standard deviation of an unknown level about the mean of all received levels, dB.
 const LEVEL_DB: f64 = 12.0;
-/// Scales of the noise that are tried, dB: a factor of 1.8 apart, so that one is within a third of the true one.
+/// Candidate noise scales, dB: a factor of 1.8 apart, so that one is within a third of the true one.
 const SCALES_DB: [f64; 3] = [1.2, 2.2, 4.0];
-/// A receiver's floor is looked for at these quantiles of what was received.
+/// Quantiles of the received levels that are candidates for the receiver's floor.
 const FLOORS: [f64; 3] = [0.1, 0.35, 0.65];
-/// Prior probability that there is no floor among the levels.
+/// Prior probability that the levels have no floor.
 const NO_FLOOR: f64 = 0.3;
-/// This many measurements within [`SATURATED_DB`] of the strongest are a receiver's limit.
+/// This many measurements within [`SATURATED_DB`] of the strongest indicate the receiver's limit.
 const SATURATED: usize = 4;
-/// Levels are told in halves of decibels at best.
+/// Tolerance within which levels count as equal, dB; levels are reported in halves of decibels at best.
 const SATURATED_DB: f64 = 0.25;
 
-/// Headings whose unit vectors have a mean as long as this are within some 25° of each other.
+/// Headings whose unit vectors have a mean of this length are within some 25° of each other.
 const SAME_WAY: f64 = 0.9;
 
-/// How many [`Supposition`]s there are at most: of four patterns, four floors and three scales.
+/// The largest number of [`Supposition`]s: of four patterns, four floors and three scales.
 pub const SUPPOSITIONS: usize = Pattern::ALL.len() * (FLOORS.len() + 1) * SCALES_DB.len();
 
-/// What both antennas of a link together may have for a pattern.
+/// The combined gain pattern of both antennas of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Pattern {
-    /// None: the gain is the same in all directions.
+    /// The gain is the same in all directions.
     Isotropic,
-    /// The same all around, such as that of upright dipoles: it depends on the elevation alone.
+    /// The gain depends on the elevation alone, as that of upright dipoles does.
     Upright,
-    /// Any, such as that of dipoles whose axes are unknown.
+    /// Any pattern fixed to the ground, such as that of dipoles whose axes are unknown.
     Tilted,
-    /// Any of a transmitter and any that turns with the drone, such as that of an antenna at its side.
+    /// Any pattern of the transmitter and any that turns with the drone, such as that of an antenna at its side.
     Turned,
 }
 
 impl Pattern {
-    /// All values.
+    /// All variants.
     pub const ALL: [Self; 4] = [Self::Isotropic, Self::Upright, Self::Tilted, Self::Turned];
 
-    /// Its prior probability, if headings are known and if not: few antennas have none, and those of animals and drones are
-    /// seldom upright.
+    /// The prior probability, with and without known headings: few antennas are isotropic, and those of animals and
+    /// drones are seldom upright.
     fn share<T: Scalar>(self, is_headed: bool) -> T {
         let either = |with: T, without: T| if is_headed { with } else { without };
         match self {
@@ -67,19 +68,20 @@ impl Pattern {
     }
 }
 
-/// A channel over open ground of which level, path-loss exponent, antennas, noise and receiver are unknown: received
-/// level = floor ⊕ (level − 10·n·log₁₀(distance) + pattern(direction)) + noise, where ⊕ adds powers.
+/// A channel over open ground with unknown level, path-loss exponent, antennas, noise and receiver: received level =
+/// floor ⊕ (level − 10·n·log₁₀(distance) + pattern(direction)) + noise, where ⊕ adds powers.
 ///
 /// * The exponent n is normally distributed, 2 ± 0.6.
-/// * The pattern of both antennas together is a series of real spherical harmonics of degree 2 in the line of sight, each
-///   with a coefficient of 0 ± 2 dB: what two dipoles of unknown axes have of that degree (one has 3.2 dB, in five
-///   coefficients); or of the one alone that is the same all around; or of none. Prior probabilities 0.5, 0.3, 0.2.
-/// * Where the drone's [`Heading`] is known, and not always the same, there is a fourth kind, of prior probability 0.35 (0.3, 0.2, 0.15 for the others): of
-///   those harmonics a second set (0 ± 1.5 dB each, as one dipole has it) turns with the drone, and with it the two of degree 1 that are
-///   horizontal (0 ± 2 dB): an antenna beside metal, or a patch, is stronger on one side.
-/// * The floor is the receiver's own noise, which a weak signal drowns in: none, or at one of three quantiles of the levels.
-///   Levels at the strongest one are saturated if at least four are alike.
-/// * The noise has Student's distribution with ν = 4 and a scale of 1.2, 2.2 or 4 dB; that of the floor 1.7 dB.
+/// * The combined pattern of both antennas is a series of real spherical harmonics of degree 2 in the line of sight,
+///   with coefficients of 0 ± 2 dB each, as two dipoles with unknown axes have in that degree (one has 3.2 dB, in five
+///   coefficients); or only the harmonic that is the same all around; or none. Prior probabilities: 0.5, 0.3, 0.2.
+/// * Where the drone's [`Heading`] is known, and not always the same, there is a fourth kind with the prior probability
+///   0.35 (0.3, 0.2, 0.15 for the others): a second set of those harmonics (0 ± 1.5 dB each, as one dipole has) turns
+///   with the drone, together with the two horizontal ones of degree 1 (0 ± 2 dB): an antenna beside metal, or a patch,
+///   is stronger on one side.
+/// * The floor is the receiver's own noise, in which a weak signal drowns: none, or at one of three quantiles of the
+///   levels. Levels at the strongest one are saturated if at least four are equal.
+/// * The noise has Student's t-distribution with ν = 4 and a scale of 1.2, 2.2 or 4 dB; that of the floor has 1.7 dB.
 ///
 /// For each [`Supposition`] (pattern, floor, scale) level, exponent and coefficients are fitted, and integrated over by Laplace's
 /// approximation (`MacKay`, *Information Theory, Inference, and Learning Algorithms*, ch. 27):
@@ -91,31 +93,31 @@ pub struct OpenGround<T> {
     level: Option<LevelPrior<T>>,
 }
 
-/// What a fit takes for granted.
+/// The discrete assumptions on which a fit is conditioned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Supposition<T> {
-    /// What antennas have for a pattern.
+    /// The combined gain pattern of the antennas.
     pub pattern: Pattern,
-    /// The level of the receiver's own noise, dB, if any signal is as weak.
+    /// The level of the receiver's own noise, dB, if any signal is that weak.
     pub floor: Option<T>,
-    /// The level beyond which the receiver tells no more, dB, if any signal is as strong.
+    /// The level at which the receiver saturates, dB, if any signal is that strong.
     pub ceiling: Option<T>,
     /// Scale of the noise, dB.
     pub scale: T,
-    /// Logarithm of its prior probability, but for a constant.
+    /// Logarithm of the prior probability, up to a constant.
     pub log_prior: T,
 }
 
 impl<T: Scalar> OpenGround<T> {
-    /// A channel with a prior of its level; without one, the level may be anything.
+    /// Creates a channel with a prior of its level; without one, the level may be anything.
     pub fn new(level: Option<LevelPrior<T>>) -> Self {
         Self { level }
     }
 
-    /// All that is supposed in turn of what was received: three quarters of [`SUPPOSITIONS`] if no heading is known, or
-    /// all are much the same. O(M²), once for a flight.
+    /// All suppositions to be tried for the measurements: three quarters of [`SUPPOSITIONS`] if no heading is known,
+    /// or if all are much the same. O(M²), once per flight.
     pub fn suppositions(
         &self,
         measurements: &[Measurement<T>],
@@ -145,8 +147,8 @@ impl<T: Scalar> OpenGround<T> {
         })
     }
 
-    /// The measurements as a transmitter at a place explains them under a supposition: `power` is the power that the
-    /// likelihood is raised to, less than one where measurements are not independent. Headings that are not there are unknown.
+    /// Fits the measurements under a supposition, for a transmitter at a place. `power` is the power to which the
+    /// likelihood is raised, less than one if the measurements are not independent. Missing headings count as unknown.
     pub fn fit(
         &self,
         measurements: &[Measurement<T>],
@@ -165,7 +167,7 @@ impl<T: Scalar> OpenGround<T> {
     }
 
     /// Logarithm of the density of all measurements (to a power) if the transmitter is at a place, summed over
-    /// suppositions. What each contributes is told to `told` by its index.
+    /// suppositions. Each one's contribution is passed to `told` with its index.
     pub fn log_likelihood(
         &self,
         measurements: &[Measurement<T>],
@@ -187,7 +189,7 @@ impl<T: Scalar> OpenGround<T> {
             let (more, less) = if log > all { (log, all) } else { (all, log) };
             all = if less.is_finite() { more + (T::ONE + (less - more).exp()).ln() } else { more };
         };
-        // One after the other, so that the one can be in the memory of the other.
+        // One after the other, so that both can use the same memory.
         if of_kind(false).next().is_some() {
             let sight = Sight::<T, PARAMETERS>::new(self.level, measurements, headings, place);
             for (index, supposition) in of_kind(false) {
@@ -204,8 +206,8 @@ impl<T: Scalar> OpenGround<T> {
     }
 }
 
-/// Whether a drone turned by so much that its antenna's pattern can be told from one that does not turn: otherwise a further
-/// pattern costs certainty and tells nothing.
+/// Whether the drone turned enough to distinguish its antenna's pattern from one that does not turn: otherwise a
+/// further pattern adds uncertainty and no information.
 fn turns<T: Scalar>(headings: &[Heading<T>]) -> bool {
     let (mut mean, mut count) = (Heading::unknown(), 0);
     for heading in headings.iter().filter(|heading| heading.is_known()) {
@@ -215,7 +217,7 @@ fn turns<T: Scalar>(headings: &[Heading<T>]) -> bool {
     count > 0 && mean.length() < T::from_f64(SAME_WAY)
 }
 
-/// The level below which this part of all lie; none without a measurement.
+/// The smallest level that at least this part of all levels does not exceed; `None` without a measurement.
 fn quantile<T: Scalar>(measurements: &[Measurement<T>], part: T) -> Option<T> {
     let level = |measurement: &Measurement<T>| -measurement.loss();
     let wanted = T::from_binary(measurements.len() as i32, 0) * part;
@@ -230,7 +232,7 @@ fn quantile<T: Scalar>(measurements: &[Measurement<T>], part: T) -> Option<T> {
     found
 }
 
-/// The strongest level, if so many are alike that the receiver tells no more.
+/// The strongest level, if enough others equal it to indicate saturation.
 fn ceiling<T: Scalar>(measurements: &[Measurement<T>]) -> Option<T> {
     let levels = || measurements.iter().map(|measurement| -measurement.loss());
     let strongest = levels().reduce(T::max)?;

@@ -3,21 +3,23 @@ use kestirim_scalar::Scalar;
 use super::{EXPONENT, LEVEL_DB, MOST, Pattern, REFERENCE_M};
 use crate::{Heading, LevelPrior, Measurement};
 
-/// Spread of a coefficient of the pattern, dB.
+/// Prior standard deviation of a coefficient of the pattern, dB.
 pub(super) const PATTERN_DB: f64 = 2.0;
-/// The same where transmitter and drone have coefficients of their own, in units of that: one dipole's, 3.2 dB in five, is less than two's.
+/// Standard deviation of a coefficient, in units of [`PATTERN_DB`], where transmitter and drone have coefficients of
+/// their own: one dipole's (3.2 dB in five coefficients) is less than that of two.
 const OWN: f64 = 0.75;
-/// √3: it makes harmonics of degree 1 whose mean square over all directions is one.
+/// √3: normalises harmonics of degree 1 to a mean square of one over all directions.
 const ROOT: f64 = 1.732_050_807_568_877_2;
-/// √15, √5: they make harmonics whose mean square over all directions is one.
+/// √15, √5: normalise harmonics of degree 2 to a mean square of one over all directions.
 const ROOTS: [f64; 2] = [3.872_983_346_207_417, 2.236_067_977_499_79];
 
-/// Parameters that are fitted: level, exponent and five coefficients of the pattern, all in units of their spread.
+/// Number of parameters that are fitted: level, exponent and five coefficients of the pattern, all in units of their
+/// prior standard deviations.
 pub(super) const PARAMETERS: usize = 7;
-/// With those of a pattern that turns with the drone: four of degree 2 that differ from the former, and two of degree 1.
+/// Number of parameters with a pattern that turns with the drone: four more of degree 2, and two of degree 1.
 pub(super) const TURNED: usize = 13;
 
-/// How many of them a pattern has, from the first on.
+/// The number of parameters, counted from the first, that a pattern uses.
 pub(super) fn used(pattern: Pattern) -> usize {
     match pattern {
         Pattern::Isotropic => 2,
@@ -27,7 +29,7 @@ pub(super) fn used(pattern: Pattern) -> usize {
     }
 }
 
-/// Mean square of a pattern's gain by its prior, in units of the square of [`PATTERN_DB`].
+/// Prior mean square of a pattern's gain, in units of the square of [`PATTERN_DB`].
 pub(super) fn mean_square<T: Scalar>(pattern: Pattern) -> T {
     match pattern {
         Pattern::Isotropic => T::ZERO,
@@ -37,24 +39,24 @@ pub(super) fn mean_square<T: Scalar>(pattern: Pattern) -> T {
     }
 }
 
-/// A measurement as it is seen from a place.
+/// A measurement as seen from a place.
 #[derive(Clone, Copy)]
 pub(super) struct Row<T, const P: usize> {
-    /// What was received, dB.
+    /// Received level, dB.
     pub(super) level: T,
-    /// What is expected before anything is fitted, dB.
+    /// Level expected before the fit, dB.
     pub(super) expected: T,
-    /// By how much a unit of each parameter changes that, dB.
+    /// Derivatives of the level with respect to the parameters, dB.
     pub(super) slopes: [T; P],
 }
 
-/// All measurements as they are seen from a place: what they say of the first P parameters.
+/// All measurements as seen from a place, linearised in the first P parameters.
 pub(super) struct Sight<T, const P: usize> {
     rows: [Row<T, P>; MOST],
     count: usize,
-    /// The level that is expected at the reference, and its standard deviation, dB.
+    /// Prior mean and standard deviation of the level at the reference distance, dB.
     pub(super) level: [T; 2],
-    /// ln of the distance that the level is meant at, m.
+    /// ln of the reference distance (m).
     reference: T,
 }
 
@@ -85,7 +87,7 @@ impl<T: Scalar, const P: usize> Sight<T, P> {
         self.rows.get(..self.count).unwrap_or(&self.rows)
     }
 
-    /// The level at one metre, dB, and the exponent that the first parameters stand for.
+    /// The level at one metre, dB, and the exponent, from the first two parameters.
     pub(super) fn named(&self, parameters: &[T; P]) -> [T; 2] {
         let exponent = T::from_f64(EXPONENT[0]) + T::from_f64(EXPONENT[1]) * parameters[1];
         let [mean, sigma] = self.level;
@@ -118,7 +120,7 @@ impl<T: Scalar, const P: usize> Row<T, P> {
         let mut turned = [T::ZERO; TURNED - PARAMETERS];
         if P > PARAMETERS {
             pattern = pattern.map(|slope| slope * T::from_f64(OWN));
-            // With no heading all gains are as likely, which is zero on average.
+            // Without a heading all gains are equally likely, and zero on average.
             if let Some(heading) = heading {
                 let [product, forward_up, right_up, difference] = pattern;
                 let [product, difference] = heading.turned_twice([product, difference]);
@@ -143,12 +145,12 @@ impl<T: Scalar, const P: usize> Row<T, P> {
     }
 }
 
-/// Ten times the decimal logarithm, from the natural one.
+/// Ten times the decimal logarithm, computed from the natural one.
 pub(super) fn decibels<T: Scalar>(logarithm: T) -> T {
     logarithm * T::from_f64(10.0 / core::f64::consts::LN_10)
 }
 
-/// Mean of what was received, dB.
+/// Mean received level, dB.
 fn mean_level<T: Scalar>(measurements: &[Measurement<T>]) -> T {
     let mut mean = T::ZERO;
     for (index, measurement) in measurements.iter().take(MOST).enumerate() {

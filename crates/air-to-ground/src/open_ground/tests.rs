@@ -9,7 +9,7 @@ use crate::{Heading, LevelPrior, Measurement};
 
 const TRUTH: [f64; 2] = [30.0, -20.0];
 
-/// Ten lines of ten measurements each, with a little noise that has no chance in it.
+/// Ten lines of ten measurements each, with a little deterministic noise.
 fn flight<T: Scalar>(exponent: f64, change: impl Fn(f64) -> f64) -> Vec<Measurement<T>> {
     let stop = |k: u32| {
         let at = [f64::from(k % 10) * 25.0 - 110.0, f64::from(k / 10) * 25.0 - 110.0];
@@ -31,7 +31,7 @@ fn suppositions<T: Scalar>(
     channel.suppositions(flight, headings).collect()
 }
 
-/// How much likelier the true place is than another.
+/// Log-likelihood of the true place minus that of another.
 fn advantage<T: Scalar>(flight: &[Measurement<T>], place: [f64; 2]) -> f64 {
     let channel = OpenGround::new(None);
     let suppositions = suppositions(&channel, flight, &[]);
@@ -80,7 +80,7 @@ fn a_known_level_tells_the_exponent_and_evidence_falls_where_it_is_wrong() {
     assert!(right.log_evidence > wrong.log_evidence + 5.0, "{right:?} {wrong:?}");
 }
 
-/// A clean flight says what is measured elsewhere, a floor and a ceiling bound it.
+/// A clean flight predicts measurements elsewhere; a floor and a ceiling bound them.
 fn foretold<T: Scalar>() {
     let flight = flight::<T>(2.0, |level| level);
     let channel = OpenGround::new(None);
@@ -96,7 +96,7 @@ fn foretold<T: Scalar>() {
         let known = -20.0 - 20.0 * far.hypot(40.0).log10();
         let (level, sigma) = at(&isotropic, far);
         assert!((level - known).abs() < 1.0, "{far}: {level} {known}");
-        // A scale of 1.2 dB with ν = 4, and 1.7 dB.
+        // A scale of 1.2 dB with ν = 4, combined with 1.7 dB.
         assert!((sigma - (2.0_f64 * 1.2 * 1.2 + 1.7 * 1.7).sqrt()).abs() < 0.01, "{sigma}");
     }
     let tilted = Supposition { pattern: Pattern::Tilted, ..isotropic };
@@ -148,7 +148,7 @@ fn nothing_and_too_much_are_borne() {
     assert_eq!(first, channel.fit(&all[..128], &[], TRUTH, &suppositions[1], 1.0));
 }
 
-/// An antenna on a drone that turns by 40° from place to place: 8 dB more to the front than to the back.
+/// An antenna on a drone that turns by 40° between places: 8 dB more gain to the front than to the back.
 fn check_turned<T: Scalar>() {
     let angle = |k: usize| 40.0_f64.to_radians() * k as f64 % core::f64::consts::TAU;
     let turned = |(k, measurement): (usize, &Measurement<T>)| {
@@ -184,7 +184,7 @@ fn check_turned<T: Scalar>() {
         .map(|(headings, is_turned)| best(headings, is_turned));
     assert!(with > without + 20.0, "{with} {without}");
     assert!(with > wrong + 20.0, "anticlockwise headings: {with} {wrong}");
-    // What log_likelihood is told is what fit finds, in the order of the suppositions.
+    // The callback of `log_likelihood` receives what `fit` finds, in the order of the suppositions.
     let (mut told, place) = (std::vec![T::ZERO; all.len()], TRUTH.map(T::from_f64));
     let log = |index, log| told[index] = log;
     channel.log_likelihood(&flight, &headings, place, T::ONE, &all, log);

@@ -1,4 +1,4 @@
-//! How far the likelihood in single precision and in fixed point is from that in double precision.
+//! Errors of the likelihood in single precision and in fixed point relative to double precision.
 
 use kestirim_air_to_ground::{Channel, Environment, Error, Measurement, Rotor};
 use kestirim_scalar::{Q16_16, Scalar};
@@ -26,7 +26,7 @@ fn errors<T: Scalar>() -> Result<Vec<f64>, Error> {
                 let expected = exact.path_loss(distance, height)?;
                 for sigmas in -10..=10 {
                     let loss = expected.mean() + f64::from(sigmas) * expected.sigma() / 2.0;
-                    // Numbers that every format has, so that only the likelihood errs.
+                    // Numbers that are exact in every format, so that only the likelihood has an error.
                     let loss = (loss.clamp(-250.0, 250.0) * 64.0).round() / 64.0;
                     let want = exact.log_likelihood(
                         &Measurement::new([-500.0, 250.0], height, loss)?,

@@ -1,4 +1,4 @@
-//! The channel against the equations as the card prints them, and the energies of the thesis.
+//! The channel against the equations as printed on the card, and the energies of the thesis.
 
 use kestirim_air_to_ground::{Channel, Environment, Error, Measurement, Rotor};
 use std::f64::consts::PI;
@@ -90,7 +90,7 @@ fn bad_measurements_have_their_errors() {
     assert_eq!(channel(huge, 0.15), Err(Error::NotFinite));
 }
 
-/// Distance (m) and seconds of hovering of a circle of radius D/3 and T points (eq. 2.16).
+/// Distance (m) and hovering time (s) of a circle of radius D/3 with T points (eq. 2.16).
 fn circle(points: f64, stop_s: f64) -> (f64, f64) {
     let chord = 2_f64.sqrt() * 2000.0 / 3.0 * (1.0 - (2.0 * PI / points).cos()).sqrt();
     ((points - 1.0) * chord, points * stop_s)

@@ -1,14 +1,14 @@
-//! Sums, products and quotients in integers as IEEE 754 defines them, rounded to nearest, ties to even: for all numbers,
-//! subnormal ones, infinities and NaN among them. On bits, so that nothing here computes with what it is to stand for.
-//! Sums and products are short rather than fast: they serve what the assembler leaves out.
+//! Sums, products and quotients in integers as IEEE 754 defines them, rounded to nearest, ties to even, for all numbers
+//! including subnormal ones, infinities and NaN. They work on bits, so that nothing here calls the routines it
+//! implements. Sums and products are short rather than fast: they handle what the assembler leaves out.
 
 const SIGN: u32 = 0x8000_0000;
 const INFINITY: u32 = 0x7f80_0000;
 const LEADING: u32 = 0x0080_0000;
 const NAN: u32 = 0x7fc0_0000;
 
-/// A finite number's exponent and its integer of 24 digits, whose leading digit is 1 but in zero; the number is the integer
-/// times 2^(exponent − 150).
+/// Exponent and 24-bit integer of a finite number, which is the integer times 2^(exponent − 150). The leading bit of
+/// the integer is 1, except for zero.
 #[inline(never)]
 fn parts(x: u32) -> (i32, u32) {
     let mut exponent = ((x & INFINITY) >> 23) as i32;
@@ -24,14 +24,14 @@ fn parts(x: u32) -> (i32, u32) {
     (exponent, integer)
 }
 
-/// So many digits to the right; the last digit stands for all that are lost.
+/// x shifted right by `by` bits; the last bit is set if any lost bit was.
 #[inline(never)]
 fn shifted(x: u32, by: u32) -> u32 {
     let kept = x.checked_shr(by).unwrap_or(0);
     kept | u32::from(kept.checked_shl(by).unwrap_or(0) != x)
 }
 
-/// The number nearest to m·2^(exponent − 158).
+/// The number nearest to m·2^(exponent − 158), with the given sign.
 #[inline(never)]
 fn rounded(sign: u32, mut exponent: i32, mut m: u32) -> u32 {
     while m & SIGN == 0 && exponent > 1 {
@@ -46,12 +46,12 @@ fn rounded(sign: u32, mut exponent: i32, mut m: u32) -> u32 {
         return sign | INFINITY;
     }
     let even = m >> 8 & 1;
-    // The leading digit counts as an exponent, and so does a carry, which may make infinity.
+    // The leading bit adds to the exponent, and so does a carry, which may give infinity.
     let magnitude = ((exponent as u32 - 1) << 23) + (m >> 8) + u32::from((m & 0xff) + even > 0x80);
     sign | magnitude
 }
 
-/// a + b.
+/// a + b, on bits.
 pub(crate) fn add(mut a: u32, mut b: u32) -> u32 {
     if a << 1 < b << 1 {
         (a, b) = (b, a);
@@ -70,7 +70,7 @@ pub(crate) fn add(mut a: u32, mut b: u32) -> u32 {
     rounded(sign, exponent + 1, if negative { m - n } else { m + n })
 }
 
-/// a · b.
+/// a · b, on bits.
 pub(crate) fn multiply(mut a: u32, mut b: u32) -> u32 {
     let sign = (a ^ b) & SIGN;
     (a, b) = (a & !SIGN, b & !SIGN);
@@ -81,7 +81,8 @@ pub(crate) fn multiply(mut a: u32, mut b: u32) -> u32 {
         return if a > INFINITY || b == 0 { NAN } else { sign | INFINITY };
     }
     let ((of_a, m), (of_b, n)) = (parts(a), parts(b));
-    // In halves of 12 digits: of the product's 48 the first 31, the last of which stands for the rest, too.
+    // In halves of 12 bits. Of the 48 bits of the product the first 31 are kept, the last of which also stands for the
+    // rest.
     let (m1, m0, n1, n0) = (m >> 12, m & 0xfff, n >> 12, n & 0xfff);
     let middle = m1 * n0 + m0 * n1 + ((m0 * n0) >> 12);
     let lost = middle << 27 | (m0 * n0) << 20;
@@ -89,7 +90,7 @@ pub(crate) fn multiply(mut a: u32, mut b: u32) -> u32 {
     rounded(sign, of_a + of_b - 125, upper)
 }
 
-/// a / b.
+/// a / b, on bits.
 pub(crate) fn divide(mut a: u32, mut b: u32) -> u32 {
     let sign = (a ^ b) & SIGN;
     (a, b) = (a & !SIGN, b & !SIGN);
@@ -103,14 +104,14 @@ pub(crate) fn divide(mut a: u32, mut b: u32) -> u32 {
         return sign;
     }
     let ((of_a, m), (of_b, n)) = (parts(a), parts(b));
-    // 2³⁹/n, at first on a straight line, then by Newton's iteration.
+    // 2³⁹/n, from a straight line and by Newton's iteration.
     let digits = n >> 8;
     let mut y = 0x1_67a7 - ((digits * 0x771f) >> 15);
     for _ in 0..2 {
         let unity = (digits * y) >> 15;
         y = y.wrapping_add_signed((y as i32 * (0x1_0000 - unity as i32)) >> 16);
     }
-    // The quotient with 15 binary places, then with 25. Rests are small, so the products modulo 2³² give them exactly.
+    // The quotient with 15 binary places, then with 25. Remainders are small, so products modulo 2³² give them exactly.
     let upper = ((m >> 8) * y) >> 16;
     let rest = (m << 15).wrapping_sub(upper.wrapping_mul(n)) as i32;
     let mut quotient = (upper << 10).wrapping_add_signed(((rest >> 11) * y as i32) >> 18);

@@ -4,7 +4,7 @@
 mod armv6m;
 mod every_case;
 #[cfg(test)]
-#[allow(dead_code)] // Of its operations, which an image computes, too.
+#[allow(dead_code)] // Its operations are used by the emulated image.
 mod pairs;
 mod root;
 #[cfg(test)]

@@ -1,7 +1,7 @@
-//! Pairs of numbers that arithmetic is tested on: on the host, and by the image `arithmetic` under an emulator, which
-//! includes this file and draws the same.
+//! Pairs of numbers for tests of the arithmetic: on the host, and in the image `arithmetic` under an emulator, which
+//! includes this file and draws the same pairs.
 
-/// Bits of numbers at the edges: of exponents, of what can be represented, of rounding.
+/// Bits of edge cases: of exponents, of the representable range, of rounding.
 pub(crate) fn edges() -> impl Iterator<Item = u32> + Clone {
     const EXPONENTS: [u32; 22] = [
         0, 1, 2, 24, 25, 26, 27, 63, 64, 102, 103, 104, 126, 127, 128, 150, 151, 191, 192, 253,
@@ -18,7 +18,7 @@ pub(crate) fn edges() -> impl Iterator<Item = u32> + Clone {
     })
 }
 
-/// Pairs at random, the same for the same seed.
+/// A reproducible sequence of random pairs.
 #[derive(Debug)]
 pub(crate) struct Pairs {
     a: u32,
@@ -28,7 +28,7 @@ pub(crate) struct Pairs {
 }
 
 impl Pairs {
-    /// The pairs of a seed.
+    /// The sequence of pairs for a seed.
     pub(crate) fn new(seed: u32) -> Self {
         let mut pairs = Self { a: seed, b: 0, c: 0x9e37_79b9, counter: 1 };
         for _ in 0..12 {
@@ -37,7 +37,8 @@ impl Pairs {
         pairs
     }
 
-    /// Chris Doty-Humphrey's sfc32, which has no multiplication: the emulated processor draws as many as it computes with.
+    /// Chris Doty-Humphrey's sfc32, which needs no multiplication: the emulated processor draws as many numbers as it
+    /// tests.
     fn draw(&mut self) -> u32 {
         let sum = self.a.wrapping_add(self.b).wrapping_add(self.counter);
         self.counter = self.counter.wrapping_add(1);
@@ -47,8 +48,8 @@ impl Pairs {
         sum
     }
 
-    /// The bits of the next two: in a quarter of all cases any bits, otherwise exponents of up to 31 apart; in half of all few
-    /// digits, which make ties and exact results.
+    /// The bits of the next two numbers: any bits in a quarter of the cases, otherwise exponents up to 31 apart; in
+    /// half of the cases few significant digits, which lead to ties and exact results.
     pub(crate) fn pair(&mut self) -> (u32, u32) {
         let (mut a, mut b, shape) = (self.draw(), self.draw(), self.draw());
         if shape & 3 != 0 {
@@ -63,10 +64,11 @@ impl Pairs {
     }
 }
 
-/// A name and what is done with a pair.
+/// A name, and an operation on a pair.
 pub(crate) type Operation = (&'static str, fn(f32, f32) -> f32);
 
-/// What a processor without a floating-point unit calls routines for; but for the root, whose function is given.
+/// The operations for which a processor without a floating-point unit calls routines; the function for the root is
+/// given.
 pub(crate) const fn operations(root: fn(f32, f32) -> f32) -> [Operation; 7] {
     [
         ("sum", |a, b| a + b),
@@ -79,20 +81,20 @@ pub(crate) const fn operations(root: fn(f32, f32) -> f32) -> [Operation; 7] {
     ]
 }
 
-/// All comparisons in one number.
+/// All comparisons of two numbers, as the bits of one.
 fn order(a: f32, b: f32) -> f32 {
     let answers = [a < b, a <= b, a > b, a >= b, a == b, a != b, a.partial_cmp(&b).is_none()];
     f32::from_bits(answers.iter().fold(0, |bits, &answer| bits << 1 | u32::from(answer)))
 }
 
-/// From integers and to integers, all of their bits.
+/// Conversions from integers and to integers, combined in one number.
 fn integers(a: f32, b: f32) -> f32 {
     let (bits, whole) = (b.to_bits(), a as i32 as u32);
     let back = (bits as i32 as f32).to_bits() ^ (bits as f32).to_bits().rotate_left(13);
     f32::from_bits(whole ^ (a as u32).rotate_left(7) ^ back)
 }
 
-/// What all results together amount to: another number if one bit of one differs. All NaN are alike.
+/// A digest of all results, which changes if any bit of one differs. All NaN count as equal.
 pub(crate) fn digest(
     pairs: impl Iterator<Item = (u32, u32)>,
     operation: fn(f32, f32) -> f32,
@@ -104,7 +106,7 @@ pub(crate) fn digest(
     })
 }
 
-/// The same for so many pairs at random of a seed; of none, for all pairs of edges.
+/// The digest for `count` random pairs of a seed; for all pairs of edge cases if `count` is zero.
 pub(crate) fn digest_of(seed: u32, count: u32, operation: fn(f32, f32) -> f32) -> u32 {
     if count == 0 {
         return digest(edges().flat_map(|a| edges().map(move |b| (a, b))), operation);

@@ -1,4 +1,4 @@
-//! All that is computed in integers, against the processor that runs the tests.
+//! The integer routines compared with the processor that runs the tests.
 
 use super::every_case::{add, divide, multiply};
 use super::pairs::{Pairs, edges};
@@ -20,7 +20,8 @@ fn check_root(bits: u32) {
     assert!(same(sqrt(x).to_bits(), x.sqrt()), "√{x:e}");
 }
 
-/// All fractions with exponents of both parities, which are all that the root depends on; and others, subnormal ones too.
+/// All fractions with exponents of both parities, on which alone the root depends, and other numbers, also subnormal
+/// ones.
 #[test]
 fn roots_are_the_processors() {
     (0x3f80_0000..0x4080_0000).chain((0..u32::MAX).step_by(997)).for_each(check_root);
@@ -35,7 +36,7 @@ fn all_pairs_of_edges_give_the_processors_bits() {
     }
 }
 
-/// The estimate of 1/n depends on the upper 15 digits of n alone: each of them with the greatest and the least n.
+/// The estimate of 1/n depends only on the upper 15 bits of n: each of them with the largest and the smallest n.
 #[test]
 fn every_estimate_of_a_reciprocal_is_good_enough() {
     for n in (0x3f80_0000..0x4000_0000).step_by(256).flat_map(|n| [n, n + 255]) {
@@ -55,7 +56,7 @@ fn pairs_at_random_give_the_processors_bits() {
     }
 }
 
-/// `cargo test --release -p kestirim-arithmetic -- --ignored`
+/// Run by `cargo test --release -p kestirim-arithmetic -- --ignored`.
 #[test]
 #[ignore = "takes a minute"]
 fn a_thousand_million_pairs_give_the_processors_bits() {

@@ -1,4 +1,4 @@
-//! The attitude and heading reference on motions whose orientation is known.
+//! The attitude and heading reference on motions with known orientation.
 
 use kestirim_attitude::{Ahrs, Error, Gains, Orientation};
 use kestirim_scalar::{Q12_20, Scalar};
@@ -10,7 +10,7 @@ fn cast<T: Scalar>(v: Vector3<f64>) -> SVector<T, 3> {
     v.map(T::from_f64)
 }
 
-/// How far from upright the reference holds gravity after `seconds` of swaying with a biased gyroscope (rad).
+/// The tilt error of the reference after `seconds` of swaying with a biased gyroscope (rad).
 fn tilt_error_after_swaying<T: Scalar>(gains: Gains<T>, seconds: f64) -> f64 {
     let bias = Vector3::new(0.02, -0.015, 0.0);
     let mut truth = Orientation::<f64>::identity();

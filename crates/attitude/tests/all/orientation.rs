@@ -1,4 +1,4 @@
-//! Orientations against nalgebra's quaternions (f64), in every scalar.
+//! Orientations compared with Rodrigues' formula (f64), in every scalar.
 
 use kestirim_attitude::Orientation;
 use kestirim_scalar::{Q12_20, Scalar};
@@ -9,7 +9,7 @@ fn cast<T: Scalar>(v: [f64; 3]) -> SVector<T, 3> {
     SVector::from(v.map(T::from_f64))
 }
 
-/// Rodrigues' formula: `v` turned about `rotation` by its length.
+/// Rodrigues' formula: `v` rotated about the axis of `rotation` by its length.
 fn rodrigues(rotation: Vector3<f64>, v: Vector3<f64>) -> Vector3<f64> {
     let angle = rotation.norm();
     if angle < 1e-12 {
@@ -118,7 +118,7 @@ fn a_million_small_turns_keep_the_norm_if_it_is_brought_back_now_and_then() {
 }
 
 proptest! {
-    /// What a tilt was wrong by is gone, and a heading that was right is still.
+    /// Levelling removes the tilt error and keeps a correct heading.
     #[test]
     fn a_levelled_orientation_keeps_its_heading(
         heading in -3.0..3.0f64,

@@ -2,14 +2,14 @@
 
 #![no_std]
 
-// Its functions are what is exported.
+// The library exports this crate's functions.
 use kestirim_c as _;
 
-// Of a computer, `core` comes compiled for programs that unwind, and wants to be told how.
+// On a computer, `core` is compiled for programs that unwind, and needs to be told how.
 #[cfg(not(target_os = "none"))]
 extern crate std;
 
-/// Never called: nothing in the library can panic, which a test shows of every image that is linked with it.
+/// The panic handler is never called: nothing in the library can panic, as a test shows for every image linked with it.
 #[cfg(target_os = "none")]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {

@@ -1,4 +1,4 @@
-//! `kestirim.h`.
+//! Tests of the header `kestirim.h`.
 
 use std::env;
 use std::fs;
@@ -8,7 +8,7 @@ use anyhow::Result;
 
 use crate::tools::{arguments, crate_folder, have, include, output_folder, program, run};
 
-/// Set to 1, the header is written instead of compared.
+/// The environment variable that, if it is 1, makes the test write the header instead of comparing it.
 const WRITE: &str = "KESTIRIM_WRITE_HEADER";
 
 #[test]
@@ -24,7 +24,7 @@ fn the_header_is_what_cbindgen_makes() -> Result<()> {
     Ok(())
 }
 
-/// Every warning there is, as an error.
+/// The flags that turn every warning into an error.
 const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"];
 
 fn compiles(compiler: &str, standard: &str, language: &str) -> Result<()> {

@@ -1,4 +1,4 @@
-//! The programs in C tell what the crates compute, on this computer and on three targets.
+//! The C programs print what the crates compute, on this computer and on three targets.
 
 use std::fs::{self, File};
 use std::io::Write;
@@ -14,10 +14,10 @@ use crate::tools::{
 };
 use crate::{reference, streams};
 
-/// All of them; each stands in `tests/programs`.
+/// All programs; their sources are in `tests/programs`.
 pub(crate) const PROGRAMS: [&str; 6] = ["pedestrian", "robot", "wheels", "uav", "drone", "gnss"];
 
-/// What a program reads, and what it is to tell.
+/// The input of a program, and its expected output.
 struct Case {
     stream: Vec<u8>,
     expected: String,
@@ -97,7 +97,7 @@ fn cmake_finds_the_library() -> Result<()> {
     }
     let example = crate_folder().join("contrib/cmake/example");
     let build = output_folder().join("cmake");
-    // As the library of the other programs, which is not compiled once more.
+    // The same library as for the other programs, so that it is not compiled again.
     let cargo = format!("-DKESTIRIM_BUILD={}", output_folder().display());
     run(Command::new("cmake").args(arguments(&[&"-S", &example, &"-B", &build, &cargo])))?;
     run(quickly(Command::new("cmake").arg("--build").arg(&build)))?;
@@ -108,27 +108,27 @@ fn cmake_finds_the_library() -> Result<()> {
     Ok(())
 }
 
-/// What a program with the pedestrian's tracker calls at least.
+/// The functions that a minimal program with the pedestrian's tracker calls.
 const SMALLEST: [&str; 3] =
     ["kestirim_pedestrian_init", "kestirim_pedestrian_update", "kestirim_pedestrian_position"];
-/// The most flash that those may take with a floating-point unit, bytes, with `core` built for size as all else is, and with
-/// `core` as Rust ships it.
+/// The largest flash size of these functions with a floating-point unit, bytes: with `core` built for size like
+/// everything else, and with `core` as Rust ships it.
 const LARGEST_FOOT: [u64; 2] = [13_000, 13_500];
 
-/// A bare-metal target, and the machine that QEMU plays.
+/// A bare-metal target, and the machine that QEMU emulates for it.
 struct Target {
     triple: &'static str,
-    /// The feature `fixed`: it has no floating-point unit.
+    /// Whether to use the feature `fixed`, because there is no floating-point unit.
     fixed: bool,
     clang: &'static [&'static str],
     board: &'static str,
     qemu: &'static [&'static str],
     programs: &'static [&'static str],
-    /// Those that sleep, too: an estimator that wakes is on the stack once more.
+    /// The programs that also test snapshots: a restored estimator is on the stack in addition.
     sleepers: &'static [&'static str],
 }
 
-/// A BBC micro:bit, with 16 KiB of RAM: the filter of GNSS and the drone's lattice do not fit with their stacks.
+/// A BBC micro:bit, with 16 KiB of RAM: the GNSS filter and the drone's lattice do not fit with their stacks.
 const CORTEX_M0: Target = Target {
     triple: "thumbv6m-none-eabi",
     fixed: true,
@@ -154,8 +154,8 @@ const CORTEX_M4F: Target = Target {
     sleepers: &PROGRAMS,
 };
 
-/// The instruction set of an ESP32-C3. The programs are compiled without its short instructions: among those, clang 14
-/// cannot align the three by which semihosting is called.
+/// The instruction set of an ESP32-C3. The programs are compiled without compressed instructions: with these, clang 14
+/// cannot align the three instructions of a semihosting call.
 const RV32IMC: Target = Target {
     triple: "riscv32imc-unknown-none-elf",
     fixed: true,
@@ -175,14 +175,15 @@ impl Target {
         Ok(has_core.then(|| own.join("bin/cargo")))
     }
 
-    /// A cargo that can build for it: ours, if rustup installed the target, or Debian's with the library's sources.
+    /// A cargo that can build for the target: ours, if rustup installed the target, or Debian's with the library's
+    /// sources.
     fn cargo(&self) -> Result<Option<Command>> {
         if let Some(cargo) = self.cargo_with_core()? {
             return Ok(Some(Command::new(cargo)));
         }
         if Path::new("/usr/lib/rustlib/src/rust/library/Cargo.lock").is_file() {
             let mut cargo = Command::new("/usr/bin/cargo");
-            // Cargo and rustup set variables for this very process, by which other builds would differ.
+            // Cargo and rustup set variables for this very process, which would change other builds.
             cargo.env_clear().envs(
                 ["PATH", "HOME"].map(|name| (name, std::env::var_os(name).unwrap_or_default())),
             );
@@ -193,11 +194,11 @@ impl Target {
         Ok(None)
     }
 
-    /// Builds the static library for it; none without the tools.
+    /// Builds the static library for the target; `None` without the tools.
     fn library(&self) -> Result<Option<PathBuf>> {
         let Some(mut cargo) = self.cargo()? else { return Ok(None) };
         if self.cargo_with_core()?.is_none() {
-            // The flags stand before cargo's own command, where it takes them as well.
+            // The environment instead of flags, which must precede cargo's subcommand.
             cargo.env("CARGO_UNSTABLE_BUILD_STD", "core");
             cargo.env("CARGO_UNSTABLE_BUILD_STD_FEATURES", "compiler-builtins-mem");
         }
@@ -214,7 +215,7 @@ impl Target {
         Ok(object)
     }
 
-    /// Links a program, and these functions of the library whether it calls them or not; where it is.
+    /// Links a program, with these functions of the library whether it calls them or not; returns the image's path.
     fn link(
         &self,
         name: &str,
@@ -237,7 +238,7 @@ impl Target {
         Ok(image)
     }
 
-    /// What a program tells of a stream.
+    /// The output of a program for a stream.
     fn emulate(&self, image: &Path, stream: &[u8]) -> Result<String> {
         let folder = tempfile::tempdir()?;
         fs::write(folder.path().join("stream.bin"), stream)?;
@@ -253,7 +254,7 @@ impl Target {
         Ok(told)
     }
 
-    /// Builds and runs the library, in the long form alone: it takes minutes for each target, and CI has half an hour.
+    /// Builds and runs the library, in the long form only: it takes minutes for each target, and CI has half an hour.
     fn check(&self) -> Result<()> {
         if std::env::var("KESTIRIM_SHORT").is_ok_and(|value| value == "1") {
             writeln!(std::io::stderr(), "SKIPPED: {}: KESTIRIM_SHORT=1", self.triple)?;
@@ -270,7 +271,7 @@ impl Target {
         let all = self.link("empty", &[], &library, &functions)?;
         assert_eq!(missing(&all, &functions)?, Vec::<&String>::new(), "{}", self.triple);
         assert_eq!(panics(&all)?, Vec::<String>::new(), "{}: a function can panic", self.triple);
-        // What functions add to a program that has all else already.
+        // The size that functions add to a program that contains everything else already.
         let over = |functions: &[String]| -> Result<u64> {
             Ok(flash(&self.link("empty", &[], &library, functions)?)? - empty)
         };
@@ -301,7 +302,7 @@ impl Target {
     }
 }
 
-/// Bytes of flash of an image.
+/// The flash size of an image, bytes.
 fn flash(image: &Path) -> Result<u64> {
     let sizes = run(Command::new("llvm-size").arg(image))?.stdout;
     let sizes = String::from_utf8(sizes)?;
@@ -310,7 +311,7 @@ fn flash(image: &Path) -> Result<u64> {
     Ok(text.parse::<u64>()? + data.parse::<u64>()?)
 }
 
-/// The functions of the header.
+/// The functions declared in the header.
 fn functions() -> Result<Vec<String>> {
     let header = fs::read_to_string(include().join("kestirim.h"))?;
     let is_in_name = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
@@ -324,14 +325,14 @@ fn functions() -> Result<Vec<String>> {
     Ok(functions)
 }
 
-/// Those of them that a program calls.
+/// The functions that a program calls.
 fn called(name: &str, functions: &[String]) -> Result<Vec<String>> {
     let source = fs::read_to_string(program(&format!("{name}.c")))?;
     let calls = |function: &&String| source.contains(&format!("{function}("));
     Ok(functions.iter().filter(calls).cloned().collect())
 }
 
-/// Functions that an image does not have.
+/// The functions that an image lacks.
 fn missing<'a>(image: &Path, functions: &'a [String]) -> Result<Vec<&'a String>> {
     let symbols = String::from_utf8(run(Command::new("llvm-nm").arg(image))?.stdout)?;
     let names: std::collections::BTreeSet<_> =

@@ -1,4 +1,4 @@
-//! The programs in Rust, by the crates themselves: what C is to tell, to the bit.
+//! Rust versions of the programs, using the crates directly: the expected output of C, bit for bit.
 
 use std::fmt::Write;
 
@@ -17,7 +17,7 @@ use nalgebra::{SVector, Vector2, Vector3};
 
 use crate::ppp::{Epochs, receiver, station};
 
-/// Lines as the programs tell them.
+/// Lines of output in the programs' format.
 #[derive(Default)]
 struct Lines(String);
 
@@ -45,7 +45,7 @@ impl Lines {
     }
 }
 
-/// Takes a stream apart.
+/// Reads values from a stream.
 struct Reader<'a>(&'a [u8]);
 
 impl Reader<'_> {
@@ -106,7 +106,7 @@ pub(crate) fn pedestrian<T: Scalar>(stream: &[u8]) -> String {
     lines.0
 }
 
-/// What a tag's trackers have in common here.
+/// The common interface of a tag's trackers in these tests.
 trait Tag<T: Scalar> {
     fn take(
         &mut self,
@@ -271,7 +271,7 @@ pub(crate) fn gnss(_: &[u8]) -> String {
     let config = PppConfig { gradient: 0.0, ..PppConfig::new(Motion::Static) };
     let mut filter = PppFilter::<{ states(12) }>::new(config);
     let receiver = receiver();
-    // Of C's interface, the same for all systems, and without tides of the ocean.
+    // The receiver of C's interface: the same antenna for all systems, and no ocean loading.
     let receiver = kestirim_gnss_ppp::Receiver {
         galileo_antenna: receiver.antenna,
         glonass_antenna: receiver.antenna,

@@ -1,4 +1,4 @@
-//! Compilers and emulators, if there are any.
+//! Runs compilers and emulators, where available.
 
 use std::env;
 use std::ffi::OsStr;
@@ -13,13 +13,13 @@ pub(crate) fn crate_folder() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Where this test's files go: beside what cargo builds.
+/// The folder of this test's files, beside what cargo builds.
 pub(crate) fn output_folder() -> PathBuf {
     let own = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
     own.parent().map_or(own.clone(), |target| target.join("c-library"))
 }
 
-/// Whether all of these programs are there; if not, that is said, or an error where they must be.
+/// Whether all of these programs are available; if not, prints a notice, or fails where they are required.
 pub(crate) fn have(test: &str, programs: &[&str]) -> Result<bool> {
     let path = env::var_os("PATH").unwrap_or_default();
     let is_missing =
@@ -29,7 +29,7 @@ pub(crate) fn have(test: &str, programs: &[&str]) -> Result<bool> {
     Ok(false)
 }
 
-/// Says why a test is skipped; an error where it must not be.
+/// Reports why a test is skipped; an error where it must not be.
 pub(crate) fn skip(test: &str, why: &str, unless: &str) -> Result<()> {
     if env::var(unless).is_ok_and(|value| value == "1") {
         bail!("{unless}=1, but {why}");
@@ -66,7 +66,7 @@ pub(crate) fn include() -> PathBuf {
     crate_folder().join("include")
 }
 
-/// Builds `libkestirim.a` with a cargo, for this computer or for a target; where it is.
+/// Builds `libkestirim.a` with the given cargo, for this computer or for a target; returns its path.
 pub(crate) fn library(cargo: &mut Command, target: Option<&str>, fixed: bool) -> Result<PathBuf> {
     let folder = output_folder().join(if fixed { "fixed" } else { "f32" });
     cargo.current_dir(crate_folder().join("staticlib")).env("CARGO_TARGET_DIR", &folder).args([
@@ -88,7 +88,7 @@ pub(crate) fn library(cargo: &mut Command, target: Option<&str>, fixed: bool) ->
     Ok(built.join("release-s/libkestirim.a"))
 }
 
-/// A library for this computer, whose size and speed nobody measures, is not optimised.
+/// Turns off optimisation of a library for this computer, whose size and speed are not measured.
 pub(crate) fn quickly(command: &mut Command) -> &mut Command {
     command
         .env("CARGO_PROFILE_RELEASE_S_LTO", "off")
@@ -96,7 +96,7 @@ pub(crate) fn quickly(command: &mut Command) -> &mut Command {
         .env("CARGO_PROFILE_RELEASE_S_CODEGEN_UNITS", "4")
 }
 
-/// A folder of recordings, if they are there.
+/// The folder of the recordings, if it is there.
 pub(crate) fn recordings(test: &str) -> Result<Option<PathBuf>> {
     let folder = crate_folder().join("../../../shared/data");
     if Path::new(&folder).is_dir() {

@@ -71,7 +71,7 @@ fn satellites_of_galileo_are_moved_between_editions_as_igs20_tells() -> Result<(
     assert_eq!(before.in_model(AntennaModel::Igs20).as_ref().and_then(z), Some(10_000.0));
     assert_eq!(galileo.in_model(AntennaModel::Igs20).as_ref().and_then(z), Some(10_000.0));
     assert_eq!(galileo.in_model(AntennaModel::Igs08), None);
-    // Estimated one by one, and no edition at all.
+    // Offsets that were estimated one by one, and an antenna without an edition.
     assert_eq!(of("BLOCK IIF", "G050", "IGS20_2417")?.in_model(AntennaModel::Igs14), None);
     assert_eq!(of("GALILEO-1", "E102", "IGS20_2417")?.in_model(AntennaModel::Igs14), None);
     let silent = of("BLOCK IIF", "G050", "OWN")?;

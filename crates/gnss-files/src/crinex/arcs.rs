@@ -1,4 +1,4 @@
-//! Numbers and texts as differences from those before.
+//! Numbers and texts stored as differences from those of the preceding epoch.
 
 use crate::error::Error;
 use crate::fields::large_integer;
@@ -6,19 +6,19 @@ use crate::text::Line;
 
 /// The highest order of differences in the format.
 const HIGHEST_ORDER: usize = 5;
-/// Ten digits before the point and three behind it fill a field.
+/// The largest value, in thousandths, that fits a field: ten digits before the point and three after it.
 const LARGEST_VALUE: u64 = 9_999_999_999_999;
 
-/// State of a satellite that the next epoch builds upon.
+/// The state of a satellite on which the next epoch builds.
 #[derive(Debug)]
 pub(super) struct Satellite {
     pub(super) name: [u8; 3],
     pub(super) arcs: Vec<Option<Arc>>,
-    /// Two of each observation.
+    /// The flags, two for each observation.
     pub(super) flags: Vec<u8>,
 }
 
-/// The differences of a number at the epoch before, from that of order 0, the number itself.
+/// The differences of a number at the preceding epoch, from order 0 (the number itself) up.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Arc {
     differences: [i64; HIGHEST_ORDER + 1],
@@ -27,7 +27,7 @@ pub(super) struct Arc {
 }
 
 impl Satellite {
-    /// Takes the line of the next epoch, of which some observables are `used`: the others are not known.
+    /// Advances the state by the line of the next epoch. Only observables that are `used` are followed.
     pub(super) fn step(
         &mut self,
         line: &Line<'_>,
@@ -65,7 +65,7 @@ impl Satellite {
         repair(&mut self.flags, rest);
         self.flags.resize(2 * self.arcs.len(), b' ');
         if compact_version == 1 {
-            // There the flags of no observation are blank without saying so.
+            // In this version the flags of a missing observation are implicitly blank.
             for (arc, flags) in self.arcs.iter().zip(self.flags.chunks_mut(2)) {
                 if arc.is_none() {
                     flags.fill(b' ');
@@ -77,7 +77,7 @@ impl Satellite {
 }
 
 impl Arc {
-    /// The next number, by its difference.
+    /// Advances to the next number, by its difference.
     fn step(mut self, difference: i64) -> Self {
         self.order = (self.order + 1).min(self.final_order);
         self.differences[self.order] = difference;
@@ -88,7 +88,7 @@ impl Arc {
         self
     }
 
-    /// Writes the number, thousandths, as 14 characters over blanks, unless it does not fit.
+    /// Writes the number, in thousandths, as 14 characters over blanks; returns whether it fits.
     pub(super) fn write(&self, field: &mut [u8]) -> bool {
         let thousandths = self.differences[0];
         let left = thousandths.unsigned_abs();
@@ -115,7 +115,7 @@ impl Arc {
     }
 }
 
-/// The digits of the numbers below a hundred.
+/// The two digits of each number below a hundred.
 const PAIRS: [[u8; 2]; 100] = {
     let mut pairs = [*b"00"; 100];
     let mut number = 0;
@@ -126,7 +126,7 @@ const PAIRS: [[u8; 2]; 100] = {
     pairs
 };
 
-/// Takes over what changed in a text: a blank changes nothing, `&` stands for a blank.
+/// Applies changes to a text: a blank leaves a character unchanged, `&` stands for a blank.
 pub(super) fn repair(text: &mut Vec<u8>, changes: &[u8]) {
     let shared = text.len().min(changes.len());
     let blank = |&byte: &u8| if byte == b'&' { b' ' } else { byte };

@@ -1,4 +1,4 @@
-//! Which observables satellites have, and which of them are of use.
+//! The observables of each satellite system, and which of them are used.
 
 use super::MOST;
 use crate::error::Error;
@@ -6,31 +6,31 @@ use crate::fields::blank_separated;
 use crate::observations::Signal;
 use crate::text::Line;
 
-/// The observables of each satellite system, by its letter; of RINEX 2 those of all, by letter 0.
+/// The observables of each satellite system, by its letter; in RINEX 2 those of all systems, by letter 0.
 #[derive(Debug, Default)]
 pub(super) struct Systems(Vec<System>);
 
 #[derive(Debug)]
 struct System {
     letter: u8,
-    /// How many were named so far.
+    /// The number of observables named so far.
     named: usize,
-    /// Of each whether it is of use.
+    /// Whether each observable is used.
     used: Vec<bool>,
 }
 
 impl Systems {
-    /// Takes a line of the header of a version of RINEX.
+    /// Takes note of a header line of a version of RINEX.
     ///
     /// # Errors
-    /// [`Error::Line`] if it says that there are more observables than there can be.
+    /// [`Error::Line`] if it announces more observables than a file can have.
     pub(super) fn take(&mut self, line: &Line<'_>, version: i32) -> Result<(), Error> {
         let (letter, from, to) = match line.label() {
             b"# / TYPES OF OBSERV" if version < 3 => (0, 0, 6),
             b"SYS / # / OBS TYPES" if version >= 3 => (line.column(0), 3, 6),
             _ => return Ok(()),
         };
-        // A list that goes on names no system, or in RINEX 2 has no number.
+        // A continuation line names no system, or in RINEX 2 has no number.
         if letter != b' ' && !line.columns(from, to).is_empty() {
             let count = line.count("how many observables there are", from, to)?;
             if count > MOST {
@@ -45,7 +45,7 @@ impl Systems {
         Ok(())
     }
 
-    /// Of each observable of a system whether it is of use; none if the header does not know the system.
+    /// Whether each observable of a system is used; `None` if the header does not list the system.
     pub(super) fn of(&self, letter: u8) -> Option<&[bool]> {
         self.0.iter().find(|system| system.letter == letter).map(|system| &*system.used)
     }
@@ -53,7 +53,7 @@ impl Systems {
 
 impl System {
     fn name(&mut self, code: &[u8]) {
-        // Those of RINEX 2 are of GPS.
+        // The observables of RINEX 2 are taken as those of GPS.
         let letter = if self.letter == 0 { b'G' } else { self.letter };
         if let Some(used) = self.used.get_mut(self.named) {
             *used = Signal::new(letter, code).is_some();

@@ -8,7 +8,7 @@ fn unpacked(text: &Text) -> Vec<&[u8]> {
     text.lines().map(|line| line.bytes).collect()
 }
 
-/// But for those of systems that are not read.
+/// All observations are restored, except for systems that are not read.
 #[test]
 fn observations_of_rinex_3_are_restored() {
     let (restored, plain) = (text(compressed_3()), text(observations_3()));
@@ -20,7 +20,7 @@ fn observations_of_rinex_3_are_restored() {
     assert_eq!(Observations::parse(&restored).unwrap(), Observations::parse(&plain).unwrap());
 }
 
-/// But for the sixth one, a strength of the signal.
+/// All observables are restored, except for the sixth, a signal strength.
 #[test]
 fn observations_of_rinex_2_are_restored() {
     let file = text(compressed_2());

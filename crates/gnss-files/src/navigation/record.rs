@@ -1,4 +1,4 @@
-//! Records of navigation files: lines, and the numbers in them.
+//! Records of navigation files: their lines and the numbers in them.
 
 use super::ephemeris::Message;
 use crate::error::Error;
@@ -7,44 +7,45 @@ use crate::system::{System, satellite};
 use crate::text::{Line, Lines};
 use crate::time::{GpsTime, full_year};
 
-/// Columns of a number.
+/// The width of a number, columns.
 const WIDTH: usize = 19;
-/// The most lines of a record that is read.
+/// The maximum number of lines of a record that are read.
 const LINES: usize = 8;
-/// Numbers of the first line, and of each further one.
+/// How many numbers the first line holds.
 const FIRST: usize = 3;
+/// How many numbers each further line holds.
 const FURTHER: usize = 4;
 
-/// Where records have what.
+/// The layout of records.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Layout {
-    /// The version without its decimals.
+    /// The major version of RINEX.
     version: i32,
-    /// The system whose satellites are told by their number alone.
+    /// The system whose satellites are written as a number without a letter.
     system: Option<u8>,
 }
 
 impl Layout {
-    /// That of a version and the letter of a file's type; none if that is no navigation file.
+    /// The layout of a version and a file type letter; `None` if that is no navigation file.
     pub(super) const fn of(version: f64, kind: u8) -> Option<Self> {
         let version = version as i32;
         let system = match (version, kind) {
             (2, b'N') => Some(b'G'),
             (2, b'E') => Some(b'E'),
-            // Of GLONASS and of SBAS.
+            // Files of GLONASS and of SBAS.
             (2, b'G' | b'H') | (3.., b'N') => None,
             _ => return None,
         };
         Some(Self { version, system })
     }
 
-    /// How many columns stand before the numbers of a further line.
+    /// The number of columns before the numbers of a further line.
     const fn margin(self) -> usize {
         if self.version < 3 { 3 } else { 4 }
     }
 
-    /// The name of the satellite that sent the ephemeris that begins with a line, where files tell its system by a
-    /// letter; none of Galileo and BeiDou, of which other messages are read.
+    /// The name of the satellite that sent the ephemeris that begins with a line, where files give its system by a
+    /// letter; `None` for Galileo and BeiDou, of which other messages are read.
     pub(super) fn sender(self, line: &Line<'_>) -> Option<[u8; 3]> {
         let from = match self.version {
             ..3 => return None,
@@ -67,23 +68,23 @@ impl Layout {
     }
 }
 
-/// Whether a satellite tells its orbit by an ellipse: one of GLONASS tells a place and a velocity, and that of a geostationary
-/// one is turned.
+/// Whether a satellite broadcasts its orbit as an ellipse: GLONASS broadcasts a position and a velocity, and the orbit
+/// of a geostationary satellite is given in a rotated frame.
 const fn has_orbit(satellite: u8) -> bool {
     !matches!(System::of(satellite), System::Glonass) && !System::is_geostationary(satellite)
 }
 
-/// The lines of a record.
+/// The numbers of a record.
 #[derive(Debug)]
 pub(super) struct Numbers<'a> {
-    /// By which the record is told.
+    /// The line that identifies the record.
     first: Line<'a>,
     lines: Vec<Line<'a>>,
     layout: Layout,
 }
 
 impl Numbers<'_> {
-    /// The time in the first line.
+    /// The time in the first line of numbers.
     pub(super) fn time(&self) -> Result<GpsTime, Error> {
         let line = self.lines.first().unwrap_or(&self.first);
         if self.layout.version < 3 {
@@ -93,7 +94,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// A number by its place among all of the record; none where there are blanks.
+    /// A number by its index in the record; `None` if the field is blank.
     pub(super) fn optional(&self, place: usize) -> Result<Option<f64>, Error> {
         let margin = self.layout.margin();
         let (line, column) = match place.checked_sub(FIRST) {
@@ -104,13 +105,13 @@ impl Numbers<'_> {
         line.optional_number("a number of a navigation message", column, column + WIDTH)
     }
 
-    /// A number that has to be there.
+    /// A required number by its index in the record.
     pub(super) fn needed(&self, place: usize) -> Result<f64, Error> {
         let complaint = || self.first.expected("a whole navigation message");
         self.optional(place)?.ok_or_else(complaint)
     }
 
-    /// α and β of Klobuchar's model.
+    /// The coefficients α and β of Klobuchar's model.
     pub(super) fn ionosphere(&self) -> Result<[[f64; 4]; 2], Error> {
         let mut both = [[0.0; 4]; 2];
         for (place, coefficient) in both.as_flattened_mut().iter_mut().enumerate() {
@@ -120,19 +121,19 @@ impl Numbers<'_> {
     }
 }
 
-/// A record, as far as it is of use.
+/// A record of a navigation file.
 #[derive(Debug)]
 pub(super) enum Record<'a> {
-    /// Of a satellite; its message, if that is told.
+    /// The ephemeris of a satellite: its number, its message if that is given, and the numbers.
     Ephemeris(u8, Option<Message>, Numbers<'a>),
-    /// Klobuchar's model.
+    /// The coefficients of Klobuchar's model.
     Ionosphere(Numbers<'a>),
-    /// Another one.
+    /// A record that is not used.
     Other,
 }
 
 impl<'a> Record<'a> {
-    /// The record that begins with a line; `lines` go on behind it.
+    /// Reads the record that begins with a line; `lines` continue after it.
     pub(super) fn of(first: Line<'a>, layout: Layout, lines: &mut Lines<'a>) -> Self {
         if layout.version >= 4 {
             let lines = rest(None, lines, |line| line.column(0) != b'>');
@@ -164,7 +165,7 @@ impl<'a> Record<'a> {
     }
 }
 
-/// A first line, if there is one, and those that follow as long as they `belong` to it; not more than are read.
+/// The first line, if given, and the following lines as long as they `belong` to the record; excess lines are skipped.
 fn rest<'a>(
     first: Option<Line<'a>>,
     lines: &mut Lines<'a>,

@@ -46,7 +46,7 @@ fn version_4_tells_the_same() -> Result<(), Error> {
         .map(|file| Navigation::parse(&[text(file)]).expect("a whole file"));
     assert_eq!((&fourth.messages, &fourth.unserved), (&third.messages, &third.unserved));
     assert_eq!((fourth.ionosphere, fourth.skipped), (third.ionosphere, 2));
-    // Of other messages of the same satellite nothing is made.
+    // Other messages of the same satellite are ignored.
     let other = navigation_4().replace("EPH E01 FNAV", "EPH E01 CNAV");
     let other = Navigation::parse(&[text(other)])?;
     assert_eq!(other.satellites().collect::<Vec<_>>(), [1]);
@@ -97,7 +97,7 @@ fn what_a_satellite_says_of_itself() -> Result<(), Error> {
     // No accuracy prediction available.
     let accuracy = galileo(" 3.120000000000e+00", "-1.000000000000e+00", Message::Fnav)?;
     assert_eq!(accuracy.accuracy, None);
-    // E5a out of service says nothing of E1 and E5b.
+    // E5a being out of service does not affect E1 and E5b.
     let [from, to] =
         ["3.120000000000e+00 0.000000000000e+00", "3.120000000000e+00 1.600000000000e+01"];
     assert!(!galileo(from, to, Message::Fnav)?.is_healthy);
@@ -156,7 +156,7 @@ fn an_orbit_that_is_none_is_left_out() -> Result<(), Error> {
     Ok(())
 }
 
-/// The record of a satellite of Galileo under another name: BeiDou's have the same order.
+/// The record of a Galileo satellite under another name: BeiDou's have the same order.
 #[test]
 fn times_of_beidou_are_14_s_behind() -> Result<(), Error> {
     let renamed = |name: &str| navigation_3().replace("E01 2020", name);

@@ -1,4 +1,4 @@
-//! The epochs of an observation file.
+//! The body of an observation file: its epochs.
 
 use std::collections::BTreeSet;
 
@@ -19,10 +19,10 @@ use crate::unserved::Unserved;
 #[derive(Debug, Default)]
 pub(super) struct Body {
     header: Header,
-    /// The same with the antennas of later events, which are told and not taken.
+    /// The header with the antennas of later events, which are reported but not used.
     latest: Header,
     epochs: Vec<RawEpoch>,
-    /// Records of all epochs, one after the other: satellite, and the end of its part of `raw`.
+    /// The records of all epochs one after the other: the satellite, and the end of its part of `raw`.
     records: Vec<(u8, usize)>,
     raw: Vec<Raw>,
     moved: bool,
@@ -35,7 +35,7 @@ pub(super) struct Body {
 struct RawEpoch {
     time: GpsTime,
     power_failure: bool,
-    /// The end of its part of the records.
+    /// The end of the epoch's part of the records.
     end: usize,
 }
 
@@ -60,7 +60,7 @@ impl Body {
                 continue;
             }
             if let Err(error) = result {
-                // What goes wrong before the last line is no cut.
+                // An error before the last line is no truncation.
                 if !lines.is_at_end() || epochs == 0 {
                     return Err(error);
                 }
@@ -80,7 +80,7 @@ impl Body {
         Ok(())
     }
 
-    /// Takes in the epochs of a stream.
+    /// Adds the epochs of a stream.
     pub(super) fn take(&mut self, text: &Text, stream: Stream) -> Result<(), Error> {
         self.warnings.extend(stream.warnings);
         self.unserved = stream.observed;
@@ -105,7 +105,7 @@ impl Body {
         Ok(())
     }
 
-    /// Reads an epoch or event that begins with a line.
+    /// Reads the epoch or event that begins with `line`.
     fn epoch<'a>(&mut self, line: &Line<'a>, lines: &mut Lines<'a>) -> Result<(), Error> {
         if line.label() == b"RINEX VERSION / TYPE" {
             return Err(line.error("expected an epoch, found the header of a second file: separate files that were joined"));
@@ -124,7 +124,7 @@ impl Body {
             return self.event(flag, count, line, lines);
         }
         let names = if old { names(line, lines, count)? } else { Vec::new() };
-        // Slips that a receiver mended are told as if observed.
+        // Cycle slips that the receiver repaired are written like observations.
         let time = if flag == b'6' { None } else { Some(self.time(line)?) };
         let (first, raw) = (self.records.len(), self.raw.len());
         for i in 0..count {
@@ -191,7 +191,7 @@ impl Body {
         Ok(())
     }
 
-    /// Reads what was observed of a satellite, or skips it without a number of it.
+    /// Reads the observations of a satellite, or skips them if it has no number.
     fn observations<'a>(
         &mut self,
         named: Named,
@@ -201,7 +201,7 @@ impl Body {
         let old = self.header.version < 3;
         let (offset, in_a_line) = if old { (0, 5) } else { (3, usize::MAX) };
         let mut line = first;
-        // RINEX 2 has one list for all.
+        // RINEX 2 has one list for all systems.
         let system = named.system().unwrap_or(System::Gps);
         let observables = self.header.observables_of(system);
         for (i, observable) in observables.iter().enumerate() {
@@ -221,7 +221,7 @@ impl Body {
         Ok(())
     }
 
-    /// Chooses the signals and takes them out, less the biases of their codes.
+    /// Chooses the signals and extracts their observations, with code biases subtracted.
     pub(super) fn finish(mut self, text: &Text, biases: &Biases) -> Observations {
         let times: Vec<_> = self.epochs.iter().map(|epoch| epoch.time).collect();
         let kept = in_order(&times);

@@ -8,46 +8,47 @@ use crate::fields::{blank_separated, decimal, integer};
 use crate::system::{System, satellite};
 use crate::text::{Line, Lines, Text};
 
-/// No tripod, mast or pillar raises an antenna's reference point farther above its marker, m, …
+/// Upper limit on the height of an antenna's reference point above its marker, m: no tripod, mast or pillar raises it
+/// farther.
 const HIGHEST: f64 = 30.0;
-/// … nor moves it farther aside, m.
+/// Upper limit on the horizontal distance of an antenna's reference point from its marker, m, in each direction.
 const FARTHEST: f64 = 5.0;
-/// No antenna that stands on its marker is so far beside it, m.
+/// Upper limit on the horizontal distance, m, of an antenna that stands on its marker (zero height).
 const ASIDE: f64 = 0.05;
 
-/// A column of observations that is of use.
+/// An observation column that is used.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Observable {
     pub(super) signal: Signal,
-    /// By which the values are multiplied.
+    /// The factor by which the values in the file are multiplied.
     pub(super) scale: f64,
 }
 
-/// The header, as far as it is of use.
+/// The parts of the header that are used.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Header {
-    /// The version without its decimals.
+    /// The major version of RINEX.
     pub(super) version: i32,
     pub(super) marker: String,
     pub(super) receiver: String,
     pub(super) antenna: String,
     pub(super) approximate_position: Option<[f64; 3]>,
-    /// If it was told.
+    /// The antenna's height, east and north offset from its marker, m, if given.
     pub(super) antenna_delta_hen: Option<[f64; 3]>,
-    /// In the order of [`System::ALL`].
+    /// The observables, in the order of [`System::ALL`].
     lists: [List; System::ALL.len()],
-    /// Of the satellites of GLONASS, by number.
+    /// The frequency channels of GLONASS satellites, by satellite number.
     pub(super) channels: BTreeMap<u8, i8>,
-    /// The satellite system of a list that goes on.
+    /// The satellite system of the list that the next line continues.
     system: u8,
 }
 
 /// The observables of a satellite system.
 #[derive(Debug, Clone, Default)]
 struct List {
-    /// By column.
+    /// The observables by column; unused columns are `None`.
     observables: Vec<Option<Observable>>,
-    /// The list so far, and how many it should become.
+    /// The observation codes read so far, of the `announced` number.
     codes: Vec<Vec<u8>>,
     announced: usize,
     scales: Vec<(Vec<u8>, f64)>,
@@ -89,12 +90,12 @@ impl Header {
             b"ANT # / TYPE" => self.antenna = line.text(20, 40),
             b"APPROX POSITION XYZ" => {
                 let position = three(line)?;
-                // Zeros stand for a place that is not known.
+                // Zeros stand for an unknown position.
                 self.approximate_position =
                     Some(position).filter(|position| position.iter().any(|&x| x != 0.0));
             }
             b"ANTENNA: DELTA H/E/N" => self.antenna_delta_hen = Some(three(line)?),
-            // Of a vehicle, in axes of its own.
+            // The offset on a vehicle, in body axes.
             b"ANTENNA: DELTA X/Y/Z" => {
                 self.antenna_delta_hen.get_or_insert_default();
             }
@@ -105,7 +106,7 @@ impl Header {
         Ok(())
     }
 
-    /// What speaks against the antenna's place above its marker, if anything does.
+    /// A problem with the antenna's offset from its marker, if there is one.
     pub(super) fn antenna_problem(&self) -> Option<String> {
         let Some([height, east, north]) = self.antenna_delta_hen else {
             return Some("no height of the antenna is told, so the position is not the marker's but the antenna's".to_owned());
@@ -119,7 +120,8 @@ impl Header {
         })
     }
 
-    /// Takes another antenna, or another place of it above the marker, from a line of an event, and what is to be told of it.
+    /// Takes note of another antenna, or of another antenna offset, in a line of an event, and returns a warning about
+    /// it.
     pub(super) fn another_antenna(&mut self, line: &Line<'_>) -> Option<String> {
         match line.label() {
             b"ANTENNA: DELTA H/E/N" => {
@@ -149,7 +151,7 @@ impl Header {
         }
     }
 
-    /// Takes up to eight satellites of GLONASS with their channels; skips one whose number or channel cannot be read.
+    /// Reads up to eight GLONASS satellites with their channels; skips those whose number or channel cannot be read.
     fn channels(&mut self, line: &Line<'_>) {
         for field in (0..8).map(|place| 4 + 7 * place) {
             let number = satellite(line.columns(field, field + 3));
@@ -162,7 +164,7 @@ impl Header {
         }
     }
 
-    /// Reads a line of a list of observables, and no other.
+    /// Reads a line if it belongs to a list of observables or of scale factors; ignores any other.
     pub(super) fn observables(&mut self, line: &Line<'_>) -> Result<(), Error> {
         match line.label() {
             b"# / TYPES OF OBSERV" if self.version < 3 => {
@@ -222,7 +224,7 @@ impl Header {
         &self.lists[system as usize].observables
     }
 
-    /// Makes of the lists what the observations need.
+    /// Resolves the lists into the observables by column.
     pub(super) fn complete(mut self) -> Self {
         for (system, list) in System::ALL.into_iter().zip(&mut self.lists) {
             list.complete(system.letter());
@@ -256,9 +258,9 @@ fn three(line: &Line<'_>) -> Result<[f64; 3], Error> {
     Ok([next()?, next()?, next()?])
 }
 
-/// Times of Galileo, QZSS and IRNSS are those of GPS to some nanoseconds.
+/// Accepts the time systems of GPS, Galileo, QZSS and IRNSS, which agree to some nanoseconds.
 fn time_system(line: &Line<'_>) -> Result<(), Error> {
-    // Columns 48 to 51, or, as some programs have it, one beside.
+    // Columns 48 to 51, or one beside, as some programs write it.
     match line.columns(43, 60) {
         b"" | b"GPS" | b"GAL" | b"QZS" | b"IRN" => Ok(()),
         other => {

@@ -5,7 +5,7 @@ use crate::system;
 use crate::system::{System, gps_satellite};
 use crate::text::{Line, Lines};
 
-/// The satellites of an epoch of RINEX 2: twelve in a line.
+/// Reads the satellite names of a RINEX 2 epoch, twelve to a line.
 pub(super) fn names<'a>(
     line: &Line<'a>,
     lines: &mut Lines<'a>,
@@ -27,17 +27,17 @@ pub(super) fn names<'a>(
     Ok(names)
 }
 
-/// Meaning of a satellite's name.
+/// The meaning of a satellite's name.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Named {
-    /// A satellite of a system that is served, by its number.
+    /// A satellite of a system that is read, by its number.
     Known(u8),
-    /// One of another system.
+    /// A satellite that is not read, by its name.
     Other([u8; 3]),
 }
 
 impl Named {
-    /// The system, if it is served.
+    /// The satellite system, if it is read.
     pub(super) fn system(self) -> Option<System> {
         match self {
             Self::Known(number) => Some(System::of(number)),
@@ -46,12 +46,13 @@ impl Named {
     }
 }
 
-/// The satellite of a name, if it is one. RINEX 2 has the same observables for all systems: those are of GPS here.
+/// The satellite of a name; `None` if it is no satellite's name. The observables of RINEX 2, which are the same for all
+/// systems, are taken as those of GPS, so its other satellites are not read.
 pub(super) fn satellite(name: [u8; 3], old: bool) -> Option<Named> {
     match name {
         [b'G' | b' ', ..] => gps_satellite(&name).map(Named::Known),
         [b'A'..=b'Z', b'0'..=b'9' | b' ', b'0'..=b'9'] => {
-            // Of a system that is read a number that no satellite has is passed over, too.
+            // A number that no satellite of a known system has is passed over, too.
             let known = system::satellite(&name).filter(|_| !old);
             Some(known.map_or(Named::Other(name), Named::Known))
         }

@@ -2,11 +2,12 @@
 
 use crate::time::GpsTime;
 
-/// Which epochs are kept so that each is later than the one before: as many as can be, and of those told twice the first.
+/// Selects the epochs to keep so that each is later than the one before: as many as possible, and the first of
+/// duplicates.
 ///
-/// So one epoch of a wrong time costs itself, whether it stands ahead of all others or behind them.
+/// A single epoch with a wrong time thus costs only itself, whether it precedes or follows all others.
 pub(super) fn in_order(times: &[GpsTime]) -> Vec<bool> {
-    // Of all ways to keep so many and one more in order, the epoch with which the one ends that ends earliest.
+    // For each length (index plus one) the last epoch of the ordered subsequence of that length that ends earliest.
     let mut ends: Vec<usize> = Vec::new();
     let mut before = Vec::with_capacity(times.len());
     for (index, time) in times.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Observations as they are given out.
+//! Observations as returned by the reader.
 
 use std::collections::BTreeMap;
 
@@ -17,13 +17,13 @@ pub struct Observations {
     pub antenna: String,
     /// The marker's approximate position: ECEF, m.
     pub approximate_position: Option<[f64; 3]>,
-    /// The antenna's reference point above, east and north of the marker, m.
+    /// The position of the antenna's reference point above, east and north of the marker, m.
     pub antenna_delta_hen: [f64; 3],
-    /// The epochs in the order of time.
+    /// The epochs, in chronological order.
     pub epochs: Vec<Epoch>,
     /// The signals taken from each satellite, by its number.
     pub signals: BTreeMap<u8, Signals>,
-    /// Which satellites were observed whose systems are not served.
+    /// A warning that counts the observed satellites of systems that are not read.
     pub unserved: Option<Warning>,
     /// Warnings about the file.
     pub warnings: Vec<Warning>,
@@ -32,9 +32,9 @@ pub struct Observations {
 /// Observations of one instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Epoch {
-    /// The instant by the receiver's clock.
+    /// The instant, by the receiver's clock.
     pub time: GpsTime,
-    /// Whether the receiver was without power since the epoch before.
+    /// Whether the receiver lost power since the preceding epoch.
     pub power_failure: bool,
     /// The satellites in the order of the file, each once.
     pub satellites: Vec<Observed>,
@@ -43,7 +43,8 @@ pub struct Epoch {
 /// Observations of one satellite in one epoch, on two carriers.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Observed {
-    /// The satellite's number: of GPS that of its name (PRN), of Galileo that and 100, of GLONASS and 150, of BeiDou and 180.
+    /// The satellite's number: the number of its name (PRN) for GPS, plus 100 for Galileo, plus 150 for GLONASS, plus
+    /// 180 for BeiDou.
     pub prn: u8,
     /// The carriers.
     pub carriers: Carriers,
@@ -51,19 +52,19 @@ pub struct Observed {
     pub code: [Option<f64>; 2],
     /// Carrier phases, cycles.
     pub phase: [Option<f64>; 2],
-    /// Whether the receiver lost the phase since the epoch before (bit 0 of the loss-of-lock indicator).
+    /// Whether the receiver lost lock on the phase since the preceding epoch (bit 0 of the loss-of-lock indicator).
     pub loss_of_lock: [bool; 2],
 }
 
 impl Observed {
-    /// Takes biases, m, off the codes.
+    /// Subtracts biases, m, from the codes.
     pub(super) fn shorten(&mut self, biases: [f64; 2]) {
         for (code, bias) in self.code.iter_mut().zip(biases) {
             *code = code.map(|code| code - bias);
         }
     }
 
-    /// The observations of the chosen signals among all those of a satellite in an epoch.
+    /// Extracts the observations of the chosen signals from all those of a satellite in an epoch.
     pub(super) fn of(prn: u8, signals: &Signals, raw: &[Raw]) -> Self {
         let mut observed = Self { prn, carriers: signals.carriers, ..Self::default() };
         for &Raw { signal, value, lock_lost } in raw {

@@ -1,4 +1,4 @@
-//! The choice among a satellite's signals.
+//! Selection of the signals of each satellite.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -6,24 +6,23 @@ use std::ops::RangeInclusive;
 
 use crate::system::{System, satellite_name};
 
-/// The trackings of L1 and of L2 of GPS, the best first: the clocks of satellites refer to W, which P and Y are
-/// too.
+/// The tracking codes of GPS L1 and L2, best first: satellite clocks refer to W, for which P and Y also stand.
 const GPS: [&[u8]; 2] = [b"WPYCXSLMN", b"WPYLSXCDMN"];
-/// The trackings of phases where that of the code has none.
+/// The tracking codes of GPS phases, best first, for a band in which the code's own tracking has no phase.
 const GPS_PHASES: [&[u8]; 2] = [b"CWPYXSLMN", b"WPYLSXCDMN"];
-/// The trackings of E1 of Galileo and of E5a or E5b.
+/// The tracking codes of Galileo E1, and of E5a or E5b, best first.
 const GALILEO: [&[u8]; 2] = [b"CXBAZ", b"QXI"];
-/// The trackings of G1 and G2 of GLONASS: clocks refer to P.
+/// The tracking codes of GLONASS G1 and G2, best first: satellite clocks refer to P.
 const GLONASS: &[u8] = b"PC";
-/// The trackings of B1I, B2I and B3I of BeiDou, …
+/// The tracking codes of BeiDou B1I, B2I and B3I, best first.
 const BEIDOU: &[u8] = b"IXQ";
-/// … and of B1C and B2a.
+/// The tracking codes of BeiDou B1C and B2a, best first.
 const BEIDOU_3: &[u8] = b"PXD";
 
-/// The channels of GLONASS.
+/// The frequency channels of GLONASS.
 pub(crate) const CHANNELS: RangeInclusive<i8> = -7..=6;
 
-/// How many times its frequencies are those of channel 0 (GLONASS ICD L1, L2, 3.3.1.1).
+/// The ratio of a GLONASS channel's frequencies to those of channel 0 (GLONASS ICD L1, L2, 3.3.1.1).
 #[cfg(feature = "rtcm")]
 pub(crate) fn channel_scale(channel: i8) -> f64 {
     1.0 + f64::from(channel) / 2_848.0
@@ -53,7 +52,7 @@ pub enum Carriers {
 }
 
 impl Carriers {
-    /// The system whose satellites send them.
+    /// The system whose satellites transmit the carriers.
     pub const fn system(self) -> System {
         match self {
             Self::L1L2 => System::Gps,
@@ -63,7 +62,7 @@ impl Carriers {
         }
     }
 
-    /// The bands by their digits in RINEX 3.
+    /// The bands, as digits of RINEX 3.
     pub(crate) const fn bands(self) -> [u8; 2] {
         match self {
             Self::L1L2 | Self::G1G2 { .. } => *b"12",
@@ -74,7 +73,7 @@ impl Carriers {
         }
     }
 
-    /// The trackings of codes and of phases.
+    /// The tracking codes of the two codes and of the two phases, best first.
     const fn trackings(self) -> [[&'static [u8]; 2]; 2] {
         match self {
             Self::L1L2 => [GPS, GPS_PHASES],
@@ -90,7 +89,7 @@ impl Carriers {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Signal {
     pub(crate) phase: bool,
-    /// The digit of RINEX 3.
+    /// The band, as a digit of RINEX 3.
     band: u8,
     tracking: u8,
 }
@@ -103,10 +102,10 @@ impl fmt::Display for Signal {
 }
 
 impl Signal {
-    /// The signal of an observation code of RINEX 3 or 2; none if it is not used.
+    /// The signal of a RINEX 3 or RINEX 2 observation code; `None` if it is not used.
     pub(crate) fn new(system: u8, code: &[u8]) -> Option<Self> {
         let (kind, band, tracking) = match (system, code) {
-            // RINEX 3.02 has B1I on band 1, where no such signal of BeiDou is otherwise.
+            // RINEX 3.02 lists B1I on band 1, where BeiDou otherwise has no signal with these tracking codes.
             (b'C', &[kind @ (b'C' | b'L'), b'1', tracking @ (b'I' | b'Q')]) => {
                 (kind, b'2', tracking)
             }
@@ -131,7 +130,7 @@ impl Signal {
         trackings.contains(&tracking).then_some(Self { phase: kind == b'L', band, tracking })
     }
 
-    /// Its carrier's frequency, Hz; of GLONASS that of channel 0.
+    /// The carrier frequency, Hz; for GLONASS that of channel 0.
     #[cfg(feature = "rtcm")]
     pub(crate) const fn frequency(self, system: System) -> f64 {
         match (system, self.band) {
@@ -146,8 +145,8 @@ impl Signal {
         }
     }
 
-    /// The code of the same carrier to which the clocks of satellites refer, as far as anybody tells them apart; none of a carrier to
-    /// which they do not.
+    /// The code on the same carrier to which satellite clocks refer, as far as codes are told apart; `None` for a
+    /// carrier to which they do not refer.
     pub(crate) const fn reference(self, carriers: Carriers) -> Option<Self> {
         match (carriers, self.tracking) {
             (Carriers::L1L2, b'W' | b'P' | b'Y') | (Carriers::E1E5a | Carriers::B1B3, _) => {
@@ -160,7 +159,7 @@ impl Signal {
     }
 }
 
-/// An observation.
+/// An observation of one signal.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Raw {
     pub(crate) signal: Signal,
@@ -168,7 +167,7 @@ pub(crate) struct Raw {
     pub(crate) lock_lost: bool,
 }
 
-/// Number of observations of each signal of each satellite.
+/// The number of observations of each signal, by satellite.
 #[derive(Debug, Default)]
 pub(super) struct Seen(BTreeMap<u8, Vec<(Signal, usize)>>);
 
@@ -183,7 +182,7 @@ impl Seen {
         }
     }
 
-    /// The signals of each satellite; none of a satellite of GLONASS that has none of the `channels`.
+    /// Chooses the signals of each satellite, without GLONASS satellites that are not among the `channels`.
     pub(super) fn choose(&self, channels: &BTreeMap<u8, i8>) -> BTreeMap<u8, Signals> {
         let (galileo, beidou) = (self.galileo(), self.beidou());
         let carriers = |number| match System::of(number) {
@@ -198,13 +197,13 @@ impl Seen {
         self.0.iter().filter_map(choose).collect()
     }
 
-    /// The satellites of GLONASS that are not on `channels`.
+    /// The GLONASS satellites that are missing from `channels`.
     pub(super) fn without_channel(&self, channels: &BTreeMap<u8, i8>) -> impl Iterator<Item = u8> {
         let of_glonass = self.0.keys().filter(|number| System::of(**number) == System::Glonass);
         of_glonass.copied().filter(|number| !channels.contains_key(number))
     }
 
-    /// How often a band of a system is observed.
+    /// The number of observations in a band of a system.
     fn count_of(&self, system: System, band: u8) -> usize {
         let all = self.0.iter().filter(|(number, _)| System::of(**number) == system);
         let all = all.flat_map(|(_, counts)| counts);
@@ -217,7 +216,7 @@ impl Seen {
         if b > 2 * a { Carriers::E1E5b } else { Carriers::E1E5a }
     }
 
-    /// The carriers of BeiDou that are observed most, of equals the first of B1I and B3I, B1I and B2I, B1C and B2a.
+    /// The most observed pair of BeiDou carriers; of equals, the first of B1I and B3I, B1I and B2I, B1C and B2a.
     fn beidou(&self) -> Carriers {
         let pairs = [Carriers::B1cB2a, Carriers::B1B2, Carriers::B1B3];
         let count = |pair: &Carriers| {
@@ -228,19 +227,19 @@ impl Seen {
     }
 }
 
-/// The signals taken from a satellite, the same in all epochs: between signals are biases of up to some metres.
+/// The signals taken from a satellite, the same in all epochs, because biases of up to some metres lie between signals.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Signals {
     /// The carriers.
     pub carriers: Carriers,
-    /// Codes on both.
+    /// The codes on both carriers.
     pub code: [Option<Signal>; 2],
-    /// Phases on both.
+    /// The phases on both carriers.
     pub phase: [Option<Signal>; 2],
 }
 
 impl Signals {
-    /// The best of those that are there at least half as often as the most frequent one.
+    /// Chooses the best of the signals that occur at least half as often as the most frequent one.
     fn choose(counts: &[(Signal, usize)], carriers: Carriers) -> Self {
         let count = |signal: &Signal| {
             counts.iter().find(|(other, _)| other == signal).map_or(0, |&(_, count)| count)
@@ -261,21 +260,21 @@ impl Signals {
         chosen
     }
 
-    /// Whether the clocks of satellites refer to both codes.
+    /// Whether satellite clocks refer to both codes.
     pub fn are_reference(&self) -> bool {
         self.code
             .iter()
             .all(|code| code.is_some_and(|code| code.reference(self.carriers) == Some(code)))
     }
 
-    /// Sentences about the codes of satellites without known biases to which the clocks of satellites do not refer.
+    /// Warnings about the codes, of satellites without known biases, to which satellite clocks do not refer.
     pub(super) fn warnings<'a>(signals: impl Iterator<Item = (&'a u8, &'a Self)>) -> Vec<String> {
         let mut others = BTreeMap::<Signal, Vec<String>>::new();
         for (number, signals) in signals {
             if signals.code.contains(&None) {
                 continue;
             }
-            // Those of Galileo's E1 are nearly the same; those of GLONASS and BeiDou do not count for much anyway.
+            // The codes of Galileo E1 are nearly the same; those of GLONASS and BeiDou carry little weight anyway.
             let first = match signals.carriers.system() {
                 System::Gps => 0,
                 System::Galileo => 1,

@@ -57,7 +57,7 @@ fn rinex_2_is_read() -> Result<(), Error> {
     assert_eq!(numbers, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 13]);
     assert_eq!(first.satellites[11].phase[0], Some(1_000_000_012.25));
     assert_eq!(first.satellites[2].code, [Some(20_000_000.5), Some(20_000_001.0)]);
-    // P1 is missing once; C1 does not step in.
+    // P1 is missing once; C1 does not replace it.
     assert_eq!(second.satellites[0].code, [None, Some(20_000_101.0)]);
     assert_eq!(sentences(&observations.warnings), [""; 0]);
     let unserved = observations.unserved.iter().map(ToString::to_string).collect::<Vec<_>>();
@@ -286,7 +286,7 @@ fn glonass_needs_channels_and_beidou_its_most_frequent_carriers() -> Result<(), 
     assert_eq!(unknown.epochs[0].satellites.len(), 2);
     let warning = "file: tells no channel of R07: they are left out";
     assert_eq!(sentences(&unknown.warnings), [warning]);
-    // No satellite is on such a channel.
+    // There is no such channel.
     let wrong = Observations::parse(&text(file("  1 R22 -8", "C2I L2I C7I L7I C6I L6I")))?;
     assert_eq!(wrong.epochs[0].satellites.len(), 1);
     Ok(())

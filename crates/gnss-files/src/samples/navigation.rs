@@ -1,8 +1,9 @@
-//! Navigation files: records that were really broadcast.
+//! Sample navigation files with actually broadcast records.
 
 use super::{header, lines};
 
-/// What G01 and E01 (on E5a) broadcast on 24 and 25 June 2020, as the station ESBC had it, and a satellite of GLONASS.
+/// Ephemerides that G01 and E01 (on E5a) broadcast on 24 and 25 June 2020, from the station ESBC, and a record of a
+/// GLONASS satellite.
 const BROADCAST: [&[&str]; 3] = [
     &[
         "G01 2020 06 25 04 00 00 1.604342833161e-05 7.048583938740e-12 0.000000000000e+00",
@@ -63,7 +64,7 @@ pub(crate) fn navigation_4() -> String {
     front.concat() + &records.map(|(told, lines)| told.to_owned() + &lines).concat() + &ionosphere
 }
 
-/// Of a day of 2005, as the station 0759 of GEONET had it.
+/// A RINEX 2 file of a day of 2005, from the GEONET station 0759.
 pub(crate) fn navigation_2() -> String {
     let front = [
         header("     2.10           N: GPS NAV DATA", "RINEX VERSION / TYPE"),

@@ -22,13 +22,13 @@ use crate::system::System;
 use crate::text::Text;
 use crate::time::GpsTime;
 
-/// Most cells of satellites and signals that a message of observations may have.
+/// The maximum number of satellite and signal cells in an observation message.
 const MOST_CELLS: u32 = 64;
 
 /// Reads a file.
 ///
 /// # Errors
-/// [`Error::File`] if it tells no date.
+/// [`Error::File`] if it holds observations but no message that tells the week.
 pub(super) fn read(text: &Text) -> Result<Stream, Error> {
     let mut reader = Reader::default();
     let bytes = text.bytes();
@@ -37,21 +37,21 @@ pub(super) fn read(text: &Text) -> Result<Stream, Error> {
         match next_msg_frame(rest) {
             (used, Some(frame)) => {
                 position += used;
-                // The decoder relies on that.
+                // The decoder relies on this limit.
                 if cell_count(&frame).is_none_or(|count| (1..=MOST_CELLS).contains(&count)) {
                     reader.take(&frame);
                 } else {
                     reader.stream.skipped += 1;
                 }
             }
-            // What looks like the beginning of a frame that does not end may be none.
+            // An apparent beginning of a frame that does not end may be no frame.
             (used, None) => position += used + 1,
         }
     }
     reader.finish(text)
 }
 
-/// An epoch of which the week is not known yet: ms of the week, and its satellites.
+/// An epoch whose week is not known yet: ms of the week, and its satellites.
 type Epoch = (i64, Vec<Signals>);
 
 #[derive(Debug, Default)]
@@ -59,13 +59,14 @@ struct Reader {
     stream: Stream,
     epochs: Vec<Epoch>,
     locks: Locks,
-    /// Ephemerides of the weeks that were transmitted, each with the number of its satellite and the place of the epoch before it.
+    /// Ephemerides in the weeks that were transmitted, each with the index of the epoch before it and its satellite's
+    /// number.
     ephemerides: Vec<(usize, u8, Ephemeris)>,
     glonass: OfGlonass,
     passed_over: PassedOver,
 }
 
-/// The signals of a message of observations: satellites' rough ranges, and what is fine beside them, ms.
+/// Reads the signals of an observation message: rough ranges of satellites, and fine ranges relative to them, ms.
 macro_rules! cells {
     ($reader:ident, $message:ident, $time:expr, $system:expr, $code:ident, $phase:ident, $lock:ident, $tracked:ident) => {{
         let data = &$message.data_segment;
@@ -84,7 +85,7 @@ macro_rules! cells {
     }};
 }
 
-/// Those of a message in MSM4 …
+/// Reads the signals of an MSM4 message.
 macro_rules! short_cells {
     ($reader:ident, $message:ident, $time:expr, $system:expr) => {
         cells!(
@@ -100,7 +101,7 @@ macro_rules! short_cells {
     };
 }
 
-/// … and in MSM7.
+/// Reads the signals of an MSM7 message.
 macro_rules! long_cells {
     ($reader:ident, $message:ident, $time:expr, $system:expr) => {
         cells!(
@@ -182,8 +183,8 @@ impl Reader {
         }
     }
 
-    /// Takes in a signal of a satellite: a rough range, a fine code and a fine phase, ms, and for how many ms that
-    /// has been tracked at least.
+    /// Adds a signal of a satellite: a rough range, a fine code and a fine phase, ms, and for how many ms the phase has
+    /// been tracked at least.
     fn cell(
         &mut self,
         time: i64,
@@ -224,14 +225,14 @@ impl Reader {
         self.ephemerides.push((self.epochs.len().saturating_sub(1), satellite, ephemeris));
     }
 
-    /// Gives epochs and ephemerides their weeks.
+    /// Assigns weeks to epochs and ephemerides.
     fn finish(self, text: &Text) -> Result<Stream, Error> {
         let Self { mut stream, mut epochs, ephemerides, glonass, passed_over, .. } = self;
         stream.warnings.extend(passed_over.sentence().map(|it| text.warning(it)));
         stream.observed = passed_over.observed;
         stream.unread = passed_over.ephemerides;
         let seconds: Vec<_> = epochs.iter().map(|(time, _)| 1e-3 * *time as f64).collect();
-        // Weeks of Galileo and BeiDou are told without a doubt.
+        // The weeks of Galileo and BeiDou are unambiguous.
         let near =
             dated(&ephemerides, &seconds, true).or_else(|| dated(&ephemerides, &seconds, false));
         let Some((place, near)) = near else {

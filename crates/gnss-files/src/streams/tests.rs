@@ -1,4 +1,4 @@
-//! Streams of both formats with the sample of a navigation file.
+//! Tests with streams of both formats that hold the ephemerides of the sample navigation file.
 
 #[cfg(feature = "rtcm")]
 mod rtcm;
@@ -46,7 +46,7 @@ fn a_stream_that_is_read_once_has_what_each_of_two_readings_finds() -> Result<()
     Ok(())
 }
 
-/// Whether two are the same but for the digits that a file has.
+/// Asserts that two ephemerides are the same to the digits that a file has.
 fn are_alike(found: &Ephemeris, told: &Ephemeris) {
     let numbers = |it: &Ephemeris| {
         let pairs = [it.latitude_terms, it.radius_terms, it.inclination_terms, it.group_delays];

@@ -1,10 +1,10 @@
 //! The inertial sensors in logs of `ArduPilot`, binary (`.bin`) or text (`.log`).
 //!
-//! `IMU` holds `TimeUS`, the sensor's number `I`, `GyrX` … in rad/s and `AccX` … in m/s²; older logs have `TimeMS`,
-//! and `IMU2` and `IMU3` instead of a number; the oldest hold no times, so that their rate has to be said.
+//! `IMU` holds `TimeUS`, the sensor's number `I`, `GyrX` … in rad/s and `AccX` … in m/s²; older logs have `TimeMS`, and
+//! `IMU2` and `IMU3` instead of a number; the oldest hold no times, so that their rate must be given.
 //!
-//! The frame is x forward, y right, z down, and the accelerometer gives specific force: −1 g along z at rest. That is a
-//! sensor mounted upside down, a turn of all axes together, so no sign is changed.
+//! The frame is x forward, y right, z down, and the accelerometer gives specific force: −1 g along z at rest. That
+//! amounts to a sensor mounted upside down, a rotation of all axes together, so no sign is changed.
 
 use super::Decoded;
 use super::ardupilot_text;
@@ -28,17 +28,17 @@ pub(crate) const ARDUPILOT: Description = Description {
     is_a_guess: false,
 };
 
-/// Where an inertial sensor's message holds what: places among its fields.
+/// The layout of an inertial sensor's message, as indices of its fields.
 #[derive(Debug, Clone, PartialEq)]
 struct Imu {
     time: Option<(usize, &'static str)>,
     sensors: [usize; 6],
-    /// Its number, and where that stands if it does.
+    /// The sensor's number, and the index of the field that holds it, if there is one.
     number: (u32, Option<usize>),
 }
 
 impl Imu {
-    /// Of a message's name and labels, if it is an inertial sensor's.
+    /// The layout of a message with this name and these labels, if it is an inertial sensor's.
     fn of(name: &str, labels: &[&str]) -> Option<Self> {
         let own = match name {
             "IMU" => 0,
@@ -70,14 +70,14 @@ impl Imu {
     }
 }
 
-/// What is gathered from messages.
+/// The data gathered from messages.
 #[derive(Debug)]
 struct Gathered {
     sensor: Numbered,
     losses: Losses,
-    /// The name of time.
+    /// The label of the time column.
     time: &'static str,
-    /// Names of the messages that are told of.
+    /// The names of the messages, for error messages.
     names: Vec<String>,
 }
 
@@ -109,7 +109,7 @@ impl Gather for Gathered {
         if let Some((_, label)) = imu.as_ref().and_then(|imu| imu.time) {
             self.time = label;
         }
-        // More are not told of.
+        // Further names are not listed.
         if self.names.len() < 20 {
             self.names.push(name.to_owned());
         }
@@ -135,7 +135,7 @@ impl Gather for Gathered {
 /// Reads a binary log.
 ///
 /// # Errors
-/// If it holds no inertial sensor, or not the one that is wanted.
+/// If it holds no inertial sensor, or not the wanted one.
 pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Decoded, Error> {
     let mut gathered = Gathered::new(options)?;
     dataflash::read(bytes, &mut gathered);

@@ -1,5 +1,5 @@
-//! Logs of `ArduPilot` as text (`.log`), as ground stations write them: a message a line, its name and fields with commas
-//! between, after lines `FMT` that tell the labels. What they hold is what the binary logs hold.
+//! Logs of `ArduPilot` as text (`.log`), as ground stations write them: one message a line, its name and fields
+//! separated by commas, after `FMT` lines that define the labels. Their contents are those of the binary logs.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -9,12 +9,12 @@ use crate::damage::Fault;
 use crate::error::Error;
 use crate::text::Text;
 
-/// How far from the beginning the first line `FMT` may be.
+/// The number of bytes at the beginning within which the first `FMT` line must start.
 const BEGINNING: usize = 2000;
-/// No message has more fields; a line that does is none.
+/// The largest number of fields of a message; a line with more is not one.
 const MOST_FIELDS: usize = 100;
 
-/// Whether a text has a line that tells the labels of messages near its beginning.
+/// Whether a text has a line that defines the labels of messages near its beginning.
 pub(super) fn is_it(bytes: &[u8]) -> bool {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let beginning = bytes.get(..BEGINNING).unwrap_or(bytes);
@@ -28,7 +28,7 @@ pub(super) fn is_it(bytes: &[u8]) -> bool {
 /// If there is no text.
 pub(super) fn read<G: Gather>(bytes: &[u8], gather: &mut G) -> Result<(), Error> {
     let text = Text::new(bytes)?;
-    // How many fields, and where they hold what, by name.
+    // For each message name: the number of fields, and the layout if it is wanted.
     let mut known: BTreeMap<Vec<u8>, (usize, Option<G::Layout>)> = BTreeMap::new();
     let mut torn: Option<(usize, usize)> = None;
     for line in text.lines() {

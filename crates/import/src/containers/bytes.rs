@@ -1,6 +1,6 @@
-//! Numbers and texts at the beginning of bytes.
+//! Parsing of numbers and texts from the beginning of bytes.
 
-/// Bytes that are read from their beginning; what does not fit into them is nothing.
+/// Bytes that are read from the beginning; reading beyond the end yields `None`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bytes<'a>(pub(super) &'a [u8]);
 
@@ -12,7 +12,7 @@ impl<'a> Bytes<'a> {
         Some(*taken)
     }
 
-    /// The next bytes, as many as `length`.
+    /// The next `length` bytes.
     pub(super) fn slice(&mut self, length: usize) -> Option<&'a [u8]> {
         let (taken, rest) = self.0.split_at_checked(length)?;
         self.0 = rest;
@@ -35,14 +35,14 @@ impl<'a> Bytes<'a> {
         self.take().map(u64::from_le_bytes)
     }
 
-    /// What stands behind its length of four bytes.
+    /// The bytes that follow their length, which takes four bytes.
     pub(super) fn counted(&mut self) -> Option<&'a [u8]> {
         let length = usize::try_from(self.u32()?).ok()?;
         self.slice(length)
     }
 }
 
-/// A text of fixed length, without the zeros behind it.
+/// A text of fixed length, without the zeros that pad it.
 pub(super) fn padded_text(bytes: &[u8]) -> Option<&str> {
     let end = bytes.iter().position(|&byte| byte == 0).unwrap_or(bytes.len());
     std::str::from_utf8(bytes.get(..end)?).ok().map(str::trim)

@@ -1,14 +1,14 @@
-//! Topics of a file: those that are wanted, with what is known of them, and what the others are called.
+//! The topics of a file: the wanted ones with their data, and the names of the others.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::chunks::Announced;
 use crate::error::listed;
 
-/// More topics are not told of.
+/// The largest number of topics whose names are kept for error messages.
 pub(super) const MOST_NAMES: usize = 100;
 
-/// Topics by their names and types.
+/// Topics by name and type.
 #[derive(Debug)]
 pub(super) struct Catalogue<T> {
     pub(super) topics: Vec<T>,
@@ -23,7 +23,7 @@ impl<T> Default for Catalogue<T> {
 }
 
 impl<T> Catalogue<T> {
-    /// The place of a topic; of one that was not announced before, if it turns out to be wanted.
+    /// The index of a topic; one that was not announced before is added if `wanted` returns it.
     pub(super) fn place(
         &mut self,
         announced: &Announced<'_>,
@@ -49,7 +49,7 @@ impl<T> Catalogue<T> {
         self.others.iter().map(String::as_str)
     }
 
-    /// The same in a sentence.
+    /// The topics that are not wanted, as a list for a sentence.
     pub(super) fn listed_others(&self) -> String {
         listed(self.others())
     }

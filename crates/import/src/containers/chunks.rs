@@ -1,6 +1,6 @@
-//! Records of ROS, of which some are chunks of others, packed or not.
+//! Records of ROS files, some of which are chunks of other records, compressed or not.
 //!
-//! A chunk that is not sound is skipped; of one that was cut off what remains is read.
+//! A chunk that is not sound is skipped; of a chunk that was cut off the remaining part is read.
 
 use super::gather::Losses;
 use super::imu_message::Encoding;
@@ -12,34 +12,34 @@ use crate::error::Error;
 /// A chunk of records.
 #[derive(Debug, Default)]
 pub(super) struct Chunk<'a> {
-    /// None if it is not known, or the chunk cannot be read at all.
+    /// The compression; `None` if it is unknown, or if the chunk cannot be read at all.
     pub(super) compression: Option<Compression>,
-    /// How many bytes the records take.
+    /// The uncompressed size of the records, bytes.
     pub(super) size: u64,
-    /// What they sum up to; 0 if that is not told.
+    /// The checksum of the uncompressed records; 0 if there is none.
     pub(super) checksum: u32,
-    /// How many bytes they take as they are packed, and those, of which some may be missing.
+    /// The compressed size, bytes, and the compressed records, of which the end may be missing.
     pub(super) length: usize,
     pub(super) packed: &'a [u8],
 }
 
-/// What a file tells of a topic.
+/// A topic as announced in a file.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Announced<'a> {
     pub(super) name: &'a str,
     pub(super) kind: &'a str,
-    /// None if it is not known.
+    /// The encoding; `None` if it is unknown.
     pub(super) encoding: Option<Encoding>,
-    /// The text that defines its messages, if it is there.
+    /// The text that defines its messages; empty if it is missing.
     pub(super) definition: &'a [u8],
 }
 
-/// What is gathered from messages.
+/// Collects data from messages.
 pub(super) trait Messages {
-    /// Takes a topic: its place, if its messages are wanted.
+    /// Takes an announced topic; returns its index if its messages are wanted.
     fn topic(&mut self, topic: &Announced<'_>) -> Option<usize>;
 
-    /// Takes a message of a topic, received at a time in ns since 1970.
+    /// Takes a message of a topic, with its time of receipt in ns since 1970.
     fn message(
         &mut self,
         place: usize,
@@ -49,16 +49,16 @@ pub(super) trait Messages {
         message: &[u8],
     );
 
-    /// What could and could not be read.
+    /// The record of what could and could not be read.
     fn losses(&mut self) -> &mut Losses;
 }
 
-/// A format of such records.
+/// A file format that consists of such records.
 pub(super) trait Records: Framing {
-    /// The chunk that a record is, if it is one; the record's end may be missing.
+    /// The chunk in a record, if the record is one; its end may be missing.
     fn chunk(record: &[u8]) -> Option<Chunk<'_>>;
 
-    /// Takes a record of that number that is no chunk.
+    /// Takes a record that is not a chunk, with its number.
     fn record<M: Messages>(&mut self, record: &[u8], number: usize, messages: &mut M);
 }
 
@@ -68,12 +68,12 @@ pub(super) fn is_cut_chunk<R: Records>(records: &R, bytes: &[u8]) -> bool {
         && records.length(bytes, true).is_some_and(|length| length > bytes.len())
 }
 
-/// Where records are.
+/// The level at which records stand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Level {
     File,
     Chunk,
-    /// In a chunk that was cut off, which is told already.
+    /// In a chunk that was cut off, which is already counted as damage.
     CutChunk,
 }
 
@@ -95,7 +95,7 @@ struct Reader<R, M> {
     records: R,
     messages: M,
     budget: Budget,
-    /// How many records there were.
+    /// The number of records so far.
     number: usize,
 }
 
@@ -148,7 +148,7 @@ impl<R: Records, M: Messages> Reader<R, M> {
         Ok(())
     }
 
-    /// Reads what remains of a chunk that was cut off.
+    /// Reads what remains of a truncated chunk.
     fn cut_chunk(&mut self, chunk: &Chunk<'_>) -> Result<(), Error> {
         let Some(compression) = chunk.compression else { return Ok(()) };
         let records = self.budget.unpack(compression, chunk.packed, chunk.size)?;

@@ -1,32 +1,33 @@
-//! Records of `DataFlash`, in which `ArduPilot` writes binary logs (`.bin`).
+//! Records of `DataFlash`, the format in which `ArduPilot` writes binary logs (`.bin`).
 //!
-//! Each message begins with `A3 95` and its type; those of type 128, `FMT`, tell the length, name, types and labels of the
-//! others (`libraries/AP_Logger/LogStructure.h` of `github.com/ArduPilot/ardupilot`, whose comments list the letters of the
-//! types).
+//! Each message begins with `A3 95` and its type; those of type 128, `FMT`, define the length, name, types and labels
+//! of the others (`libraries/AP_Logger/LogStructure.h` of `github.com/ArduPilot/ardupilot`, whose comments list the
+//! letters of the types).
 //!
-//! There is no checksum: a message is taken if another one or the end follows it. Weighed: the crate `ardupilot-binlog` 0.2 (MIT or
-//! Apache-2.0) goes on behind damage without telling it, gives up after 256 faults, and allocates each message by its names.
+//! There is no checksum: a message is accepted if another one or the end follows it. Considered instead: the crate
+//! `ardupilot-binlog` 0.2 (MIT or Apache-2.0) goes on behind damage without reporting it, gives up after 256 faults,
+//! and allocates each message by its names.
 
 use super::bytes::{Bytes, padded_text};
 use super::gather::Losses;
 use super::walk::{Framing, Step, Walk};
 
 const HEAD: [u8; 2] = [0xa3, 0x95];
-/// The head and the type.
+/// The size of the magic bytes and the type.
 const HEADER: usize = 3;
-/// The type of messages that tell what others hold.
+/// The type of the messages that define the others, and their length, bytes.
 const FMT: u8 = 128;
 const FMT_LENGTH: usize = 89;
 
-/// What is gathered from the messages of a log, binary or text.
+/// Collects data from the messages of a log, binary or text.
 pub(super) trait Gather {
-    /// Where a message holds what: places among its fields.
+    /// The layout of a message, as indices of its fields.
     type Layout;
 
-    /// Takes the name and labels of a message, the first of its kind: where it holds what is wanted, if it does.
+    /// Takes the name and labels of a message type, once for each; returns its layout if it is wanted.
     fn define(&mut self, name: &str, labels: &[&str]) -> Option<Self::Layout>;
 
-    /// Takes a message; none if a field that is needed holds no number.
+    /// Takes a message; `None` if a required field holds no number.
     fn take(
         &mut self,
         layout: &Self::Layout,
@@ -34,7 +35,7 @@ pub(super) trait Gather {
         field: &dyn Fn(usize) -> Option<f64>,
     ) -> Option<()>;
 
-    /// What could and could not be read.
+    /// The record of what could and could not be read.
     fn losses(&mut self) -> &mut Losses;
 }
 
@@ -69,7 +70,7 @@ pub(super) fn read<G: Gather>(bytes: &[u8], gather: &mut G) {
     }
 }
 
-/// A field of a message: where it begins behind the type, and its type's letter.
+/// A field of a message: its offset behind the type, and the letter of its type.
 #[derive(Debug, Clone, Copy)]
 struct Field {
     from: usize,
@@ -77,7 +78,7 @@ struct Field {
 }
 
 impl Field {
-    /// How many bytes a type takes.
+    /// The size of a type, bytes.
     fn size(letter: u8) -> Option<usize> {
         Some(match letter {
             b'b' | b'B' | b'M' => 1,
@@ -90,7 +91,7 @@ impl Field {
         })
     }
 
-    /// A number; types that no time, number or axis has are none.
+    /// The value as a number; `None` for types that are not used for times, sensor numbers or axes.
     fn value(self, body: &[u8]) -> Option<f64> {
         let mut bytes = Bytes(body.get(self.from..)?);
         Some(match self.letter {
@@ -113,7 +114,7 @@ impl Field {
     }
 }
 
-/// What messages of a type hold.
+/// The definition of messages of one type.
 #[derive(Debug)]
 struct Message<L> {
     length: usize,
@@ -121,7 +122,7 @@ struct Message<L> {
     layout: Option<L>,
 }
 
-/// What messages of each type hold.
+/// The definitions of messages, by type.
 #[derive(Debug)]
 struct Formats<L>(Vec<Option<Message<L>>>);
 
@@ -138,7 +139,7 @@ impl<L> Formats<L> {
         self.0.get(usize::from(kind))?.as_ref()
     }
 
-    /// Takes a message `FMT` that is not in itself contradictory and told first of its type.
+    /// Takes an `FMT` message, if it is consistent in itself and the first for its type.
     fn define(&mut self, body: &[u8], gather: &mut impl Gather<Layout = L>) -> Option<()> {
         let mut bytes = Bytes(body);
         let (kind, length) = (bytes.u8()?, usize::from(bytes.u8()?));
@@ -150,7 +151,7 @@ impl<L> Formats<L> {
         let mut fields = Vec::new();
         let mut end = Some(0);
         for letter in letters.bytes() {
-            // Behind a type that is not known yet nothing has a place.
+            // Behind a field of unknown type the offsets are unknown.
             let Some(from) = end else { break };
             fields.push(Field { from, letter });
             end = Field::size(letter).map(|size| from + size);
@@ -187,7 +188,7 @@ impl<L> Framing for Formats<L> {
     }
 }
 
-/// Whether nothing follows but what fills the last page of a memory.
+/// Whether the rest only fills up the last page of a memory.
 fn is_filling(bytes: &[u8]) -> bool {
     bytes.split_first().is_some_and(|(first, rest)| {
         matches!(first, 0 | 0xff) && rest.iter().all(|byte| byte == first)

@@ -1,21 +1,22 @@
-//! Messages of ROS by their definitions, which stand in the file: in the header of a bag's connection
-//! (<https://wiki.ros.org/msg>), in a schema `ros1msg` or `ros2msg` of MCAP
-//! (<https://mcap.dev/spec/registry>, <https://design.ros2.org/articles/legacy_interface_definition.html>).
+//! ROS messages by their definitions, which are part of the file: in the header of a bag's connection
+//! (<https://wiki.ros.org/msg>), in a schema `ros1msg` or `ros2msg` of MCAP (<https://mcap.dev/spec/registry>,
+//! <https://design.ros2.org/articles/legacy_interface_definition.html>).
 //!
-//! A text of lines `type name`, then those of the types it needs, behind lines of `=` and `MSG: package/Name`.
+//! A definition is a text of lines `type name`, followed by the types that it needs, each behind a line of `=` and
+//! `MSG: package/Name`.
 
 use std::collections::BTreeMap;
 
 use super::bytes::Bytes;
 use super::imu_message::Encoding;
 
-/// No message has more fields, or types in types.
+/// The largest number of fields of a message, and the deepest nesting of types.
 const MOST_FIELDS: usize = 10_000;
 const DEEPEST: usize = 8;
-/// A message that has more numbers than bytes and this is none.
+/// The number of values, in excess of its bytes, that a message may have; one with more is invalid.
 const MOST_STEPS: usize = 1000;
 
-/// A number, or what stands for one in a message.
+/// The type of a field: a number, or a builtin that stands for one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Of {
     Unsigned(usize),
@@ -23,11 +24,11 @@ pub(super) enum Of {
     Single,
     Double,
     Text,
-    /// Seconds and nanoseconds, those signed or not.
+    /// Seconds and nanoseconds, signed or unsigned.
     Time,
     /// A stamp and the name of a frame.
     Header,
-    /// Another type.
+    /// Another message type, by its index.
     Type(usize),
 }
 
@@ -57,7 +58,7 @@ impl Of {
         })
     }
 
-    /// Whether it is a number without a fraction.
+    /// Whether the type is an integer.
     pub(super) fn is_integer(self) -> bool {
         matches!(self, Self::Unsigned(_) | Self::Signed(_))
     }
@@ -67,12 +68,12 @@ impl Of {
     }
 }
 
-/// How many of a type there are.
+/// The number of values in a field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Count {
     One,
     Fixed(usize),
-    /// As many as are told before them.
+    /// A list, whose length precedes its values.
     Told,
 }
 
@@ -84,7 +85,7 @@ pub(super) struct Field {
     pub(super) count: Count,
 }
 
-/// A message's type, and those that it needs.
+/// The type of a message, with those that it needs.
 #[derive(Debug)]
 pub(super) struct Definition(Vec<Vec<Field>>);
 
@@ -92,16 +93,16 @@ pub(super) struct Definition(Vec<Vec<Field>>);
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Leaf<'a> {
     Number(f64),
-    /// µs
+    /// A time, µs.
     Time(f64),
     Text(&'a [u8]),
 }
 
-/// What is told of a value: the places of the fields that lead to it, which one of a list it is, and the value.
+/// The visitor of values: it takes the indices of the fields that lead to a value, the index in a list, and the value.
 pub(super) type Visit<'v, 'a> = dyn FnMut(&[usize], usize, Leaf<'a>) + 'v;
 
 impl Definition {
-    /// Of a type's name and text; none if a type that it needs is not there.
+    /// Parses the definition of a type; `None` if a type that it needs is missing.
     pub(super) fn read(kind: &str, text: &str) -> Option<Self> {
         let mut texts = BTreeMap::new();
         let (mut name, mut lines) = (plain(kind), Vec::new());
@@ -120,12 +121,12 @@ impl Definition {
         Some(Self(reader.types.into_iter().collect::<Option<_>>()?))
     }
 
-    /// The fields of a type; those of the message itself are of type 0.
+    /// The fields of a type; the message itself is type 0.
     pub(super) fn fields(&self, of: usize) -> &[Field] {
         self.0.get(of).map_or(&[], Vec::as_slice)
     }
 
-    /// Goes through a message; none if it ends before its end.
+    /// Visits all values of a message; `None` if the message is too short.
     pub(super) fn walk<'a>(
         &self,
         encoding: Encoding,
@@ -149,7 +150,7 @@ impl Definition {
     }
 }
 
-/// A type's name as packages write it in messages: without `/msg/`.
+/// The name of a type as messages of packages write it: without `/msg/`.
 fn plain(name: &str) -> String {
     name.trim().replacen("/msg/", "/", 1)
 }
@@ -178,7 +179,7 @@ impl Reader<'_> {
             }
             let mut words = line.split_whitespace();
             let (of, field) = (words.next()?, words.next()?);
-            // A constant, as `uint8 NONE=0` or `uint8 NONE = 0`.
+            // A constant, such as `uint8 NONE=0` or `uint8 NONE = 0`.
             if field.contains('=') || words.next().is_some_and(|word| word.starts_with('=')) {
                 continue;
             }
@@ -199,7 +200,7 @@ impl Reader<'_> {
         Some(place)
     }
 
-    /// A type that another one needs, perhaps of the same package.
+    /// A type that another one needs; without a package it belongs to the same one.
     fn other(&mut self, own: &str, of: &str, depth: usize) -> Option<usize> {
         let of = plain(of);
         let package = own.split_once('/').map_or("", |(package, _)| package);
@@ -213,7 +214,7 @@ struct Cursor<'a> {
     whole: usize,
     is_cdr: bool,
     is_big: bool,
-    /// How many values there may be yet.
+    /// The number of values that may still be visited.
     steps: usize,
 }
 
@@ -231,7 +232,7 @@ impl<'a> Cursor<'a> {
             return None;
         }
         if fields.is_empty() && self.is_cdr {
-            // What stands in a type without fields.
+            // CDR puts one byte into a type without fields.
             self.bytes.u8()?;
         }
         for (place, field) in fields.iter().enumerate() {
@@ -290,7 +291,7 @@ impl<'a> Cursor<'a> {
         Some(())
     }
 
-    /// A number of so many bytes, at a multiple of them in CDR.
+    /// An unsigned number of `size` bytes; in CDR it is aligned to a multiple of them.
     fn unsigned(&mut self, size: usize) -> Option<u64> {
         if self.is_cdr {
             let read = self.whole - self.bytes.0.len();
@@ -308,11 +309,11 @@ impl<'a> Cursor<'a> {
     fn text(&mut self) -> Option<&'a [u8]> {
         let length = usize::try_from(self.unsigned(4)?).ok()?;
         let text = self.bytes.slice(length)?;
-        // CDR counts a zero at the end.
+        // The length in CDR includes a terminating zero.
         Some(if self.is_cdr { text.strip_suffix(b"\0").unwrap_or(text) } else { text })
     }
 
-    /// µs
+    /// A time, µs.
     fn time(&mut self) -> Option<f64> {
         let (seconds, nanoseconds) = (self.unsigned(4)?, self.unsigned(4)?);
         Some(seconds as f64 * 1e6 + nanoseconds as f64 / 1e3)
@@ -371,10 +372,10 @@ mod tests {
     fn what_is_no_definition_is_none() {
         assert!(Definition::read("a/B", "C c").is_none());
         assert!(Definition::read("a/B", "float64[x] c").is_none());
-        // A type that holds itself never ends.
+        // A type that contains itself never ends.
         let endless = Definition::read("a/B", "B[1] b").unwrap();
         assert_eq!(endless.walk(Encoding::Ros1, &[0; 100], &mut |_, _, _| {}), None);
-        // Many values of no bytes.
+        // Very many values that take no bytes.
         let empty = "E[] e\n==\nMSG: a/E\n";
         let many = Definition::read("a/B", empty).unwrap();
         assert_eq!(many.walk(Encoding::Ros1, &[0xff; 4], &mut |_, _, _| {}), None);

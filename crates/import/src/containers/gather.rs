@@ -1,14 +1,14 @@
-//! What a reader gathers on its way through a file: rows of numbers, and stretches that cannot be read.
+//! The data that a reader collects from a file: rows of numbers, and stretches that cannot be read.
 
 use crate::damage::{Damage, Fault};
 use crate::formats::Description;
 use crate::part::Part;
 use crate::table::Table;
 
-/// Time, three axes of the accelerometer, three of the gyroscope, as they stand in a file.
+/// Time, three axes of the accelerometer, and three of the gyroscope, in the units of the file.
 pub(super) type Row = [f64; 7];
 
-/// The numbers of one sensor, and the record of each row.
+/// The rows of one sensor, with the record of each.
 #[derive(Debug, Default)]
 pub(super) struct Stream {
     pub(super) columns: [Vec<f64>; 7],
@@ -23,7 +23,7 @@ impl Stream {
         self.records.push(record);
     }
 
-    /// The numbers of a row; not a number beyond the last one.
+    /// The numbers of a row; NaN beyond the last one.
     pub(super) fn row(&self, place: usize) -> Row {
         self.columns.each_ref().map(|column| column.get(place).copied().unwrap_or(f64::NAN))
     }
@@ -32,7 +32,7 @@ impl Stream {
         self.records.len()
     }
 
-    /// A table under a format's names, with what was lost on the way.
+    /// A table with the column names of a format, and with the losses as its damage.
     pub(super) fn table(
         self,
         known: &Description,
@@ -44,29 +44,29 @@ impl Stream {
         self.named(known, time, damage)
     }
 
-    /// A table under a format's names.
+    /// A table with the column names of a format.
     pub(super) fn named(self, known: &Description, time: &str, damage: Damage) -> Table {
         let names = std::iter::once(time).chain(known.sensors).map(str::to_owned);
         Table::decoded(names.zip(self.columns), self.records, damage)
     }
 }
 
-/// What a file holds beside a sensor's rows.
+/// The number of bytes that were read, and the stretches that could not be.
 #[derive(Debug, Default)]
 pub(crate) struct Losses {
-    /// How many bytes could be read.
+    /// The number of bytes that could be read.
     pub(super) read: usize,
     stretches: Vec<(Fault, usize, usize)>,
 }
 
 impl Losses {
-    /// Adds a stretch of so many bytes.
+    /// Adds a stretch of `bytes` bytes that could not be read.
     pub(super) fn add(&mut self, fault: Fault, record: usize, bytes: usize) {
         self.stretches.push((fault, record, bytes));
     }
 
-    /// As damage of a sensor with so many rows: each stretch counts as many of them as it would have held, and at least
-    /// one.
+    /// The losses as damage of a sensor with `rows` rows: each stretch counts as the number of rows that it would have
+    /// held, at least one.
     pub(crate) fn damage(&self, part: Part, rows: usize) -> Damage {
         let mut damage = Damage::of(part);
         let density = rows as f64 / self.read.max(1) as f64;

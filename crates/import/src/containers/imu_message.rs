@@ -1,21 +1,21 @@
 //! The message `Imu` of ROS: `sensor_msgs/Imu` as ROS 1 and `sensor_msgs/msg/Imu` as ROS 2 write it
-//! (<https://docs.ros.org/en/noetic/api/sensor_msgs/html/msg/Imu.html>): a header with a stamp, then orientation, angular
-//! velocity and linear acceleration, each with the nine numbers of its covariance. m/s², rad/s; the acceleration is specific
-//! force: +1 g upwards at rest (REP 145).
+//! (<https://docs.ros.org/en/noetic/api/sensor_msgs/html/msg/Imu.html>): a header with a stamp, then orientation,
+//! angular velocity and linear acceleration, each with the nine numbers of its covariance. m/s², rad/s; the
+//! acceleration is specific force: +1 g upwards at rest (REP 145).
 //!
-//! Where a covariance begins with −1 the sensor has no such values: then they are not numbers here.
+//! Where a covariance begins with −1 the sensor has no such values, which are then NaN here.
 
 use super::bytes::Bytes;
 use super::gather::Row;
 
-/// How a message is written.
+/// The serialisation of a message.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Encoding {
-    /// ROS 1's own: little-endian without gaps.
+    /// The format of ROS 1: little-endian without padding.
     Ros1,
-    /// CDR of DDS, of either order, each number at a multiple of its size.
+    /// The CDR format of DDS, of either byte order, each number aligned to its size.
     Cdr,
-    /// Protobuf, in which `host-sim` writes.
+    /// Protobuf, the format that `host-sim` writes.
     Protobuf,
 }
 
@@ -57,7 +57,7 @@ fn cdr(message: &[u8]) -> Option<Row> {
     row(f64::from(seconds), nanoseconds, bytes, number)
 }
 
-/// What follows the header.
+/// Reads the part behind the header.
 fn row(
     seconds: f64,
     nanoseconds: u32,

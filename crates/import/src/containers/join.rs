@@ -1,16 +1,18 @@
-//! Two sensors with clocks of the same kind but times of their own as one.
+//! Merges two sensors whose clocks agree but whose sampling times differ.
 
 use super::gather::Stream;
 use crate::error::Error;
 
-/// Across longer gaps nothing is interpolated, s.
+/// The longest gap that is interpolated over, s.
 const LONGEST_GAP: f64 = 0.1;
 
-/// The rows of a gyroscope, with the accelerometer interpolated linearly onto their times where it has values on both sides:
-/// never beyond its ends, and not across gaps of more than 0.1 s. `second` is a second in the unit of both times.
+/// The rows of a gyroscope, with the accelerometer interpolated linearly onto their times.
+///
+/// Rows without accelerometer values on both sides are dropped: there is no extrapolation beyond its ends, and no
+/// interpolation across gaps of more than 0.1 s. `second` is one second in the unit of both times.
 ///
 /// # Errors
-/// If there is no such row.
+/// If no row remains.
 pub(super) fn join(
     gyroscope: &Stream,
     accelerometer: &Stream,
@@ -18,7 +20,7 @@ pub(super) fn join(
 ) -> Result<(Stream, String), Error> {
     let [times, ax, ay, az, ..] = &accelerometer.columns;
     let axes = [ax, ay, az];
-    // A time that is out of order tears no gap into all that follow.
+    // A single time out of order must not cause a gap in all that follow.
     let mut order: Vec<usize> = (0..times.len()).filter(|&i| times[i].is_finite()).collect();
     order.sort_by(|&a, &b| times[a].total_cmp(&times[b]));
     let mut joined = Stream::default();

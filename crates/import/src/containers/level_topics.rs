@@ -1,4 +1,4 @@
-//! Topics of ROS that hold a drone's places, its height, and the level of a radio on board.
+//! ROS topics that hold a drone's positions, its height, and the level of a radio on board.
 
 use std::collections::BTreeSet;
 
@@ -12,12 +12,12 @@ use crate::error::{Error, listed};
 use crate::options::Options;
 use crate::unit::Unit;
 
-/// What a topic holds.
+/// The content of a topic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
     /// Latitude, longitude, altitude, and whether there is a fix.
     Fix,
-    /// A height above where the drone took off.
+    /// A height above the take-off point.
     Height,
     /// A received level.
     Level,
@@ -26,7 +26,7 @@ pub(crate) enum Role {
 }
 
 impl Role {
-    /// The column that it is in a table.
+    /// The name of the corresponding column in a table.
     pub(crate) fn column(self) -> &'static str {
         match self {
             Self::Fix => "lat",
@@ -37,33 +37,33 @@ impl Role {
     }
 }
 
-/// A message's numbers.
+/// The numbers of one message.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Entry {
-    /// When it was sent and received, µs since 1970; the first is 0 or none without a stamp.
+    /// The times at which it was sent and received, µs since 1970; the first is 0 or `None` without a stamp.
     pub(crate) stamp: Option<f64>,
     pub(crate) receipt: f64,
-    /// As many as the role has, then not a number.
+    /// The values: as many as the role has, followed by NaN.
     pub(crate) values: Values,
 }
 
-/// A topic that may hold something wanted.
+/// A topic that may hold wanted data.
 #[derive(Debug)]
 pub(crate) struct Topic {
     pub(crate) name: String,
     pub(crate) role: Role,
-    /// The field of the number.
+    /// The name of the field that holds the number.
     pub(crate) field: String,
     unit: Option<Unit>,
     message: NumberMessage,
     pub(crate) entries: Vec<Entry>,
 }
 
-/// What topics there are, and what they say.
+/// The topics of a file, with their data.
 pub(crate) struct LevelTopics<'o> {
     options: &'o Options,
     catalogue: Catalogue<Topic>,
-    /// Those that may be levels, but nothing says so.
+    /// The names of topics that may hold levels, although nothing confirms it.
     doubtful: BTreeSet<String>,
     pub(crate) losses: Losses,
 }
@@ -78,10 +78,10 @@ impl<'o> LevelTopics<'o> {
         }
     }
 
-    /// The one topic of places.
+    /// The single topic of positions.
     ///
     /// # Errors
-    /// If there is none, or several and nobody says which.
+    /// If there is none, or several and no option chooses.
     pub(crate) fn fixes(&self) -> Result<&Topic, Error> {
         let found: Vec<_> = self.of(&[Role::Fix]).collect();
         match found[..] {
@@ -94,10 +94,10 @@ impl<'o> LevelTopics<'o> {
         }
     }
 
-    /// The one topic of heights, if there is one.
+    /// The single topic of heights, if there is one.
     ///
     /// # Errors
-    /// If there are several and nobody says which.
+    /// If there are several and no option chooses.
     pub(crate) fn heights(&self) -> Result<Option<&Topic>, Error> {
         let found: Vec<_> = self.of(&[Role::Height]).collect();
         match found[..] {
@@ -106,10 +106,10 @@ impl<'o> LevelTopics<'o> {
         }
     }
 
-    /// The one topic of levels or path losses.
+    /// The single topic of levels or path losses.
     ///
     /// # Errors
-    /// If there is none, or several and nobody says which.
+    /// If there is none, or several and no option chooses.
     pub(crate) fn levels(&self) -> Result<&Topic, Error> {
         let found: Vec<_> = self.of(&[Role::Level, Role::Loss]).collect();
         match found[..] {
@@ -136,10 +136,10 @@ impl<'o> LevelTopics<'o> {
         }
     }
 
-    /// How much a topic's numbers are in dB.
+    /// The factor that converts a topic's numbers to dB.
     ///
     /// # Errors
-    /// If nobody says the unit of whole numbers that cannot be below zero.
+    /// If the numbers are unsigned integers and no option gives their unit.
     pub(crate) fn scale(&self, topic: &Topic) -> Result<f64, Error> {
         let column = topic.role.column();
         let unit = self.options.units.of(column).or_else(|| topic.unit.clone());
@@ -158,7 +158,7 @@ impl<'o> LevelTopics<'o> {
     }
 }
 
-/// What a topic is to its messages' definition and the options.
+/// The topic, as its messages' definition and the options describe it; `None` if it is not wanted.
 fn known(
     topic: &Announced<'_>,
     options: &Options,
@@ -176,7 +176,7 @@ fn known(
     Some(Topic { name: topic.name.to_owned(), role, field, unit, message, entries: Vec::new() })
 }
 
-/// Several topics where one is wanted.
+/// The error for several topics where one is needed.
 fn several(what: &str, found: &[&Topic], first: &Topic, option: &str) -> Error {
     let names = listed(found.iter().map(|topic| topic.name.as_str()));
     let option = format!("{option}{}", listed([first.name.as_str()]));
@@ -202,7 +202,7 @@ impl Messages for LevelTopics<'_> {
             Some((stamp, values)) => {
                 topic.entries.push(Entry { stamp, receipt: receipt as f64 / 1e3, values });
             }
-            // Its bytes were read, but it is none.
+            // Its bytes were read, but it is not such a message.
             None => self.losses.add(Fault::Torn, record, 0),
         }
     }

@@ -1,8 +1,8 @@
-//! MCAP (<https://mcap.dev/spec>): channels of ROS 2 (CDR) and ROS 1, in chunks or not, plain, LZ4 or Zstandard. The index is
-//! not needed.
+//! MCAP (<https://mcap.dev/spec>): channels of ROS 2 (CDR) and ROS 1, in chunks or not, uncompressed, LZ4 or Zstandard.
+//! The index is not needed.
 //!
-//! Weighed: the crate `mcap` 0.26 (MIT), which the tests write with. Its readers end at the first record that is damaged, and it
-//! unpacks with libraries of C.
+//! Considered instead: the crate `mcap` 0.26 (MIT), with which the tests write. Its readers stop at the first damaged
+//! record, and it decompresses with C libraries.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ use crate::options::Options;
 pub(crate) const MCAP: Description = topics::description(Format::Mcap, "mcap", "MCAP");
 
 const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
-/// Kind and length of a record.
+/// The size of a record's kind and length, bytes.
 const HEADER: usize = 9;
 /// Kinds of records.
 const SCHEMA: u8 = 3;
@@ -30,7 +30,7 @@ const CHANNEL: u8 = 4;
 const MESSAGE: u8 = 5;
 const CHUNK: u8 = 6;
 
-/// Whether a file begins as MCAP does.
+/// Whether a file begins with the magic of MCAP.
 pub(super) fn is_it(bytes: &[u8]) -> bool {
     bytes.starts_with(&MAGIC)
 }
@@ -38,7 +38,7 @@ pub(super) fn is_it(bytes: &[u8]) -> bool {
 /// Reads a file.
 ///
 /// # Errors
-/// If it holds no inertial sensor, or several and nobody says which, or unpacks to too much.
+/// If it holds no inertial sensor, or several and no option chooses, or unpacks to too much.
 pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Decoded, Error> {
     let records = bytes.get(MAGIC.len()..).unwrap_or_default();
     chunks::read(records, Mcap::default(), Topics::default())?.decoded(&MCAP, options)
@@ -62,14 +62,15 @@ pub(super) fn levels<'o>(bytes: &[u8], options: &'o Options) -> Result<LevelTopi
     chunks::read(records, Mcap::default(), LevelTopics::new(options))
 }
 
-/// What a schema tells: the name of a type, and its definition if that is a text of ROS or a description of protobuf.
+/// The content of a schema: the name of a type, and its definition if that is a text of ROS or a description of
+/// protobuf.
 #[derive(Debug)]
 struct Schema {
     name: String,
     definition: Vec<u8>,
 }
 
-/// What is told of schemas and channels.
+/// The schemas and channels read so far.
 #[derive(Debug, Default)]
 struct Mcap {
     schemas: BTreeMap<u16, Schema>,
@@ -160,7 +161,7 @@ impl Framing for Mcap {
     }
 
     fn follows(&self, bytes: &[u8]) -> bool {
-        // A length of more than 2⁴⁸ is none.
+        // A length of 2⁴⁸ or more is implausible.
         bytes.starts_with(&MAGIC)
             || bytes.first().is_some_and(|&kind| kind != 0)
                 && bytes.get(7..HEADER).is_none_or(|highest| highest == [0, 0])

@@ -1,4 +1,4 @@
-//! One sensor's text among several in a file.
+//! One sensor's text among several in an archive.
 
 use super::gather::Stream;
 use crate::damage::{Damage, Fault};
@@ -9,8 +9,8 @@ use crate::table::Table;
 use crate::text::Text;
 use crate::unit::{Quantity, Unit};
 
-/// Reads three axes of a sensor and their times: the rows that have numbers for all of them, in SI units if the names tell
-/// units. The axes fill the places of the accelerometer or of the gyroscope.
+/// Reads three axes of a sensor and their times: the rows that hold numbers for all of them, in SI units if the names
+/// give units. The axes fill the columns of the accelerometer or of the gyroscope.
 ///
 /// # Errors
 /// If there is no such table, or one of the columns is missing.

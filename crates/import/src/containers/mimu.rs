@@ -1,10 +1,13 @@
-//! Packets of raw inertial data that an `OpenShoe` module sends (MIMU22BT, MIMU4444 and their kin, also sold by Inertial
-//! Elements), as its scripts write them to a file: `0xAA`, the packet's number, the length of what follows, a time in ticks of
-//! 64 MHz, six numbers for each sensor, and the sum of all bytes before, the most significant byte first (`log_mimu_data.m` and
-//! `mimu_parse_bin.cpp` of the `OpenShoe` Matlab scripts; MIMU22BL Integration Guide 1.12, "Raw IMU data").
+//! Packets of raw inertial data from an `OpenShoe` module (MIMU22BT, MIMU4444 and related ones, also sold by Inertial
+//! Elements), as its scripts write them to a file.
 //!
-//! Accelerations are in 1/2048 g, rates in 1/16.4 °/s, as both scripts have it. The sensors of a module do not all look the same
-//! way, so one is taken and told, none averaged. The time wraps after 67 s; a longer gap is not seen.
+//! A packet consists of `0xAA`, its number, the length of what follows, a time in ticks of 64 MHz, six numbers for each
+//! sensor, and the sum of all bytes before, all most significant byte first (`log_mimu_data.m` and `mimu_parse_bin.cpp`
+//! of the `OpenShoe` Matlab scripts; MIMU22BL Integration Guide 1.12, "Raw IMU data").
+//!
+//! Accelerations are in 1/2048 g and rates in 1/16.4 °/s, as in both scripts. The sensors of a module differ in
+//! orientation, so one is selected and reported, and none are averaged. The time wraps after 67 s; a longer gap goes
+//! unnoticed.
 
 use super::Decoded;
 use super::bytes::Bytes;
@@ -34,17 +37,17 @@ const COUNTS_PER_G: f64 = 2048.0;
 const COUNTS_PER_DEGREE_PER_SECOND: f64 = 16.4;
 
 const HEAD: u8 = 0xaa;
-/// The head, the packet's number and the length.
+/// The size of the first byte, the packet's number and the length, bytes.
 const HEADER: usize = 4;
-/// The time before the sensors' numbers.
+/// The size of the time before the sensors' numbers, bytes.
 const STAMP: usize = 4;
-/// Six numbers of two bytes.
+/// The size of one sensor's six numbers of two bytes, and that of the checksum, bytes.
 const SENSOR: usize = 12;
 const SUM: usize = 2;
-/// A file may begin in the middle of a packet, which is no longer than this.
+/// The length of the longest packet, bytes: a file may begin in the middle of one.
 const LONGEST: usize = HEADER + u8::MAX as usize + SUM;
 
-/// Whether two packets follow each other at the beginning of a file.
+/// Whether two consecutive packets are found at the beginning of a file.
 pub(super) fn is_it(bytes: &[u8]) -> bool {
     (0..LONGEST.min(bytes.len())).any(|from| {
         let rest = bytes.get(from..).unwrap_or_default();
@@ -53,7 +56,7 @@ pub(super) fn is_it(bytes: &[u8]) -> bool {
     })
 }
 
-/// The length of a whole packet that begins with these bytes.
+/// The length of the complete packet that these bytes begin with, if its checksum is right.
 fn packet(bytes: &[u8]) -> Option<usize> {
     let length = announced(bytes)?;
     let (body, sum) = bytes.get(..length)?.split_last_chunk::<SUM>()?;
@@ -61,7 +64,7 @@ fn packet(bytes: &[u8]) -> Option<usize> {
     (found == u16::from_be_bytes(*sum)).then_some(length)
 }
 
-/// The length that a packet of raw data says.
+/// The length that a packet of raw data announces.
 fn announced(bytes: &[u8]) -> Option<usize> {
     let [HEAD, _, _, payload, ..] = bytes else { return None };
     let payload = usize::from(*payload);
@@ -95,7 +98,7 @@ pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Decoded, Error> {
     Ok(Decoded { table, notes })
 }
 
-/// Takes the sensors of a packet.
+/// Takes the samples of all sensors in a packet.
 fn take(packet: &[u8], record: usize, clock: &mut Clock, sensors: &mut Numbered) -> Option<()> {
     let mut bytes = Bytes(packet);
     let _ = bytes.u8()?;
@@ -113,7 +116,7 @@ fn take(packet: &[u8], record: usize, clock: &mut Clock, sensors: &mut Numbered)
     Some(())
 }
 
-/// The module's clock and counter of packets, both of which wrap.
+/// The module's clock and packet counter, both of which wrap.
 #[derive(Debug, Default)]
 struct Clock {
     last: Option<(u16, u32)>,
@@ -133,7 +136,7 @@ impl Clock {
     }
 }
 
-/// How packets are told apart.
+/// The framing of packets.
 struct Packets;
 
 impl Framing for Packets {

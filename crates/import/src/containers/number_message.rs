@@ -1,4 +1,4 @@
-//! Messages of ROS that hold a place, a height or a level, as their definitions tell.
+//! ROS messages that hold a position, a height or a level, identified by their definitions.
 //!
 //! | message | |
 //! |---|---|
@@ -6,8 +6,8 @@
 //! | `std_msgs/Float32` and its kin | `data`, by the last part of the topic's name (`docs.ros.org/en/noetic/api/std_msgs`) |
 //! | `mavros_msgs/RadioStatus` | `rssi_dbm` (`docs.ros.org/en/noetic/api/mavros_msgs`) |
 //!
-//! and any other that names a number `rssi`, `rx_power`, `path_loss` or the like. `level` and `power` alone may be
-//! of anything (the messages of `/rosout` have a `level`), unless dB stand behind them.
+//! Any other message with a number named `rssi`, `rx_power`, `path_loss` or the like is accepted as well. `level` and
+//! `power` alone may mean anything (the messages of `/rosout` have a `level`), unless they carry the unit dB.
 
 use super::definition::{Count, Definition, Field, Leaf, Of};
 use super::imu_message::Encoding;
@@ -16,25 +16,25 @@ use crate::names::named;
 use crate::options::Options;
 use crate::unit::{Quantity, Unit};
 
-/// The definition of `sensor_msgs/NavSatFix`, which a file may lack.
+/// The definition of `sensor_msgs/NavSatFix`, for files that lack it.
 const FIX: &str = "Header header\nsensor_msgs/NavSatStatus status\nfloat64 latitude\nfloat64 longitude\nfloat64 altitude\n\
     float64[9] position_covariance\nuint8 position_covariance_type\n==\nMSG: sensor_msgs/NavSatStatus\nint8 status\nuint16 service\n";
 
-/// Names of a level, …
+/// Names of fields and topics that hold a level.
 const LEVELS: [&str; 8] =
     ["rssi", "rss", "signal", "signalstrength", "rxpower", "receivedpower", "rsrp", "rxrssi"];
-/// … of one in dB or of something else, …
+/// Names that may mean a level in dB or something else.
 const DOUBTFUL: [&str; 2] = ["level", "power"];
-/// … of a path loss, …
+/// Names of fields and topics that hold a path loss.
 const LOSSES: [&str; 2] = ["pathloss", "pl"];
-/// … and of a height above the ground where the drone took off.
+/// Names of fields and topics that hold a height above the ground at the take-off point.
 const HEIGHTS: [&str; 6] =
     ["relalt", "relativealtitude", "heightabovetakeoff", "heightaboveground", "height", "agl"];
 
-/// Numbers of a message: of a fix four, of the others one.
+/// The numbers of a message: four for a fix, one for any other.
 pub(crate) type Values = [f64; 4];
 
-/// Where a message holds its numbers.
+/// The layout of a message's numbers.
 #[derive(Debug)]
 pub(super) struct NumberMessage {
     definition: Definition,
@@ -42,19 +42,19 @@ pub(super) struct NumberMessage {
     header: Option<usize>,
 }
 
-/// What a message is.
+/// The role of a message, and how it is read.
 pub(super) struct Found {
     pub(super) role: Role,
     pub(super) field: String,
-    /// None of whole numbers that are never below zero, and whose name says no unit.
+    /// The unit; `None` for unsigned integers whose name does not give it.
     pub(super) unit: Option<Unit>,
-    /// Whether nothing but `level` or `power` says what it is.
+    /// Whether the role rests on the name `level` or `power` alone.
     pub(super) is_doubtful: bool,
     pub(super) message: NumberMessage,
 }
 
 impl NumberMessage {
-    /// Of a topic's name, its type's name and definition; none if it holds nothing wanted.
+    /// Identifies a message from the names of its topic and type and its definition; `None` if it holds nothing wanted.
     pub(super) fn of(topic: &str, kind: &str, text: &[u8], options: &Options) -> Option<Found> {
         let text = std::str::from_utf8(text).unwrap_or_default();
         let kind = kind.replacen("/msg/", "/", 1);
@@ -75,7 +75,7 @@ impl NumberMessage {
             Some((place, role, unit, is_doubtful))
         });
         let all: Vec<_> = all.by_ref().collect();
-        // Of several the one whose unit is sure.
+        // Of several fields, one whose unit is certain is preferred.
         let (place, role, unit, is_doubtful) = all
             .iter()
             .find(|(_, _, unit, is_doubtful)| unit.is_some() && !is_doubtful)
@@ -88,7 +88,7 @@ impl NumberMessage {
         Some(Found { role, field, unit, is_doubtful, message })
     }
 
-    /// The stamp, µs, and the numbers of a message; none if it is not of this type.
+    /// The stamp, µs, and the numbers of a message; `None` if it is not of this type.
     pub(super) fn read(&self, encoding: Encoding, message: &[u8]) -> Option<(Option<f64>, Values)> {
         let (mut stamp, mut values) = (None, [f64::NAN; 4]);
         let mut visit = |path: &[usize], _: usize, leaf: Leaf<'_>| match leaf {
@@ -112,7 +112,7 @@ fn header(definition: &Definition) -> Option<usize> {
     definition.fields(0).iter().position(|field| field.of == Of::Header)
 }
 
-/// The definition of a type of `std_msgs` with a number, which a file may lack.
+/// The definition of a numeric type of `std_msgs`, for files that lack it.
 fn usual(kind: &str) -> Option<&'static str> {
     Some(match kind {
         "std_msgs/Float32" => "float32 data",
@@ -143,12 +143,12 @@ fn fix(topic: &str, definition: Definition, options: &Options) -> Option<Found> 
     Some(Found { role: Role::Fix, field, unit: None, is_doubtful: false, message })
 }
 
-/// A topic's name without the stroke before it.
+/// A topic's name without surrounding slashes.
 fn bare(name: &str) -> &str {
     name.trim().trim_matches('/')
 }
 
-/// What a number is, its unit if that is sure, and whether it is doubtful what it is.
+/// The role of a number, its unit if that is certain, and whether the role is doubtful.
 fn meaning(
     topic: &str,
     field: &Field,
@@ -174,7 +174,7 @@ fn meaning(
         let of_name = named(name, Some(quantity), names);
         let is_known = match said {
             Some(pick) => bare(&pick.name) == bare(topic) || pick.name == field.name,
-            // Of heights a number alone: images have a height as well.
+            // A height counts only if it is the message's sole number: images have a height as well.
             None => of_name.is_some() && if is_height { is_plain } else { !is_said },
         };
         if is_known && (is_height || is_topic != Some(false)) {
@@ -188,5 +188,5 @@ fn meaning(
     (is_topic != Some(false)).then_some((Role::Level, unit, !is_sure))
 }
 
-/// What `--columns h=` says if the altitude of the places is the height.
+/// The value of `--columns h=` that takes the altitude of the fixes as the height.
 pub(crate) const ALTITUDE: &str = "altitude";

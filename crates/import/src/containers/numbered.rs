@@ -1,4 +1,4 @@
-//! One of several sensors of a kind that have numbers.
+//! Selects one of several numbered sensors of a kind.
 
 use std::collections::BTreeSet;
 
@@ -6,10 +6,10 @@ use super::gather::{Row, Stream};
 use crate::error::{Error, listed, quoted};
 use crate::options::Options;
 
-/// The number that `--topic` says.
+/// The sensor's number that the option `--topic` gives.
 ///
 /// # Errors
-/// If it says no number.
+/// If it is not a number.
 pub(super) fn wanted(options: &Options) -> Result<Option<u32>, Error> {
     let Some(said) = &options.topic else { return Ok(None) };
     said.trim().parse().map(Some).map_err(|_| {
@@ -18,7 +18,7 @@ pub(super) fn wanted(options: &Options) -> Result<Option<u32>, Error> {
     })
 }
 
-/// The rows of the sensor with the wanted number, and which others there are.
+/// The rows of the sensor with the wanted number, and the numbers of all sensors seen.
 #[derive(Debug, Default)]
 pub(super) struct Numbered {
     wanted: u32,
@@ -28,16 +28,16 @@ pub(super) struct Numbered {
 }
 
 impl Numbered {
-    /// The sensor that `--topic` says, or number 0.
+    /// Selects the sensor that `--topic` gives, or number 0.
     ///
     /// # Errors
-    /// If `--topic` says no number.
+    /// If `--topic` is not a number.
     pub(super) fn new(options: &Options) -> Result<Self, Error> {
         let said = wanted(options)?;
         Ok(Self { wanted: said.unwrap_or(0), is_said: said.is_some(), ..Self::default() })
     }
 
-    /// Keeps a row if it is the wanted sensor's.
+    /// Keeps a row if it belongs to the wanted sensor.
     pub(super) fn push(&mut self, number: u32, record: usize, row: Row) {
         self.seen.insert(number);
         if number == self.wanted {
@@ -45,15 +45,15 @@ impl Numbered {
         }
     }
 
-    /// Whether there is any sensor of this kind.
+    /// Whether any sensor of this kind was seen.
     pub(super) fn is_seen(&self) -> bool {
         !self.seen.is_empty()
     }
 
-    /// Which of several it is, such as `IMU 0 of 3`; nothing of one alone.
+    /// A note on the selection, such as `IMU 0 of 3`; `None` if there is only one sensor.
     ///
     /// # Errors
-    /// If there is none of this number, but others are.
+    /// If there is no sensor with this number, but there are others.
     pub(super) fn note(&self, kind: &str) -> Result<Option<String>, Error> {
         let (wanted, count) = (self.wanted, self.seen.len());
         if self.stream.len() > 0 {

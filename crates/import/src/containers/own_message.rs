@@ -1,16 +1,16 @@
-//! An inertial sensor's samples in what `host-sim` writes with `--mcap`: a protobuf message of package `kestirim` with a double
-//! for each column, whose names the schema tells (`google/protobuf/descriptor.proto`, `FileDescriptorSet`;
-//! <https://protobuf.dev/programming-guides/encoding/>). Its time is that of the record.
+//! An inertial sensor's samples as `host-sim` writes them with `--mcap`: protobuf messages of package `kestirim` with
+//! one double for each column, whose names the schema gives (`google/protobuf/descriptor.proto`, `FileDescriptorSet`;
+//! <https://protobuf.dev/programming-guides/encoding/>). The time of a sample is that of its record.
 
 use super::bytes::Bytes;
 
-/// The columns, in m/s² and rad/s.
+/// The names of the columns, in m/s² and rad/s.
 const COLUMNS: [&[u8]; 6] =
     [b"ax_m_s2", b"ay_m_s2", b"az_m_s2", b"gx_rad_s", b"gy_rad_s", b"gz_rad_s"];
-/// The type of a field that is a double.
+/// The descriptor's code for a field of type double.
 const DOUBLE: u64 = 1;
 
-/// A field's value.
+/// The value of a field.
 enum Value<'a> {
     Varint(u64),
     Fixed64([u8; 8]),
@@ -18,12 +18,12 @@ enum Value<'a> {
     Fixed32,
 }
 
-/// Where a message holds the six numbers of a sample: the numbers of the fields.
+/// The field numbers of the six values of a sample.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct OwnImu([u64; 6]);
 
 impl OwnImu {
-    /// Of a type's name and description; none if it is none of an inertial sensor.
+    /// The layout of a type, from its name and description; `None` if it is not an inertial sensor's.
     pub(super) fn of(kind: &str, description: &[u8]) -> Option<Self> {
         let own = kind.strip_prefix("kestirim.")?;
         let mut found = None;
@@ -44,7 +44,7 @@ impl OwnImu {
         found
     }
 
-    /// Acceleration and rate; what a message leaves out is zero.
+    /// Acceleration and rate; fields that a message omits are zero.
     pub(super) fn read(self, message: &[u8]) -> Option<[f64; 6]> {
         let mut values = [0.0; 6];
         fields(message, |number, value| {
@@ -57,7 +57,7 @@ impl OwnImu {
     }
 }
 
-/// Takes a field's description: `FieldDescriptorProto.name`, `.number`, `.type`.
+/// Takes the description of a field: `FieldDescriptorProto.name`, `.number`, `.type`.
 fn place(field: &[u8], places: &mut [u64; 6]) -> Option<()> {
     let (mut column, mut number, mut kind) = (None, 0, 0);
     fields(field, |id, value| match (id, value) {
@@ -72,7 +72,7 @@ fn place(field: &[u8], places: &mut [u64; 6]) -> Option<()> {
     Some(())
 }
 
-/// Takes each of the messages or texts with a number.
+/// Calls `take` for each message or text with this field number.
 fn each<'a, T>(message: &'a [u8], wanted: u64, mut take: impl FnMut(&'a [u8]) -> T) -> Option<()> {
     fields(message, |number, value| {
         if let (true, Value::Bytes(bytes)) = (number == wanted, value) {
@@ -81,7 +81,7 @@ fn each<'a, T>(message: &'a [u8], wanted: u64, mut take: impl FnMut(&'a [u8]) ->
     })
 }
 
-/// Takes the fields of a message; none if it is none.
+/// Calls `take` for each field of a message; `None` if the message is malformed.
 fn fields<'a>(message: &'a [u8], mut take: impl FnMut(u64, Value<'a>)) -> Option<()> {
     let mut bytes = Bytes(message);
     while !bytes.0.is_empty() {

@@ -1,4 +1,4 @@
-//! Zip files that telephones export, with a text a sensor: which program wrote them.
+//! Zip files exported by telephones, with one text for each sensor: identifies the program that wrote them.
 
 use super::zipped::Zipped;
 use super::{Decoded, phyphox, refuse_topic, sensor_logger};
@@ -7,14 +7,14 @@ use crate::formats::Format;
 use crate::options::Options;
 use crate::text::{Text, letters};
 
-/// The names of a gyroscope's text, the better one first.
+/// The names of a gyroscope's text, the preferred one first.
 const GYROSCOPES: [&str; 2] = [phyphox::GYROSCOPE, "GyroscopeUncalibrated.csv"];
 
-/// What a telephone exported.
+/// An export of a telephone.
 pub(super) struct Phone<'a> {
     zipped: Zipped<'a>,
     gyroscope: Vec<u8>,
-    /// The gyroscope's file.
+    /// The name of the gyroscope's text.
     name: &'static str,
     format: Format,
 }
@@ -23,7 +23,7 @@ impl<'a> Phone<'a> {
     /// Opens a zip file.
     ///
     /// # Errors
-    /// If it holds no gyroscope, or one of a program that is not known.
+    /// If it holds no gyroscope, or was written by an unknown program.
     pub(super) fn open(bytes: &'a [u8], options: &Options) -> Result<Self, Error> {
         refuse_topic(options, "a zip file of texts")?;
         let mut zipped = Zipped::open(bytes)?;
@@ -54,7 +54,7 @@ impl<'a> Phone<'a> {
     /// Reads the sensors.
     ///
     /// # Errors
-    /// If one is missing, or a text is none of the format.
+    /// If one is missing, or a text is not of the format.
     pub(super) fn read(&mut self, options: &Options) -> Result<Decoded, Error> {
         let Self { zipped, gyroscope, name, format } = self;
         match format {

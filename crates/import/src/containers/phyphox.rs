@@ -1,9 +1,11 @@
-//! Zip files of CSV that phyphox exports (RWTH Aachen, <https://phyphox.org>), with any of its separators and decimal signs.
+//! Zip files of CSV that phyphox exports (RWTH Aachen, <https://phyphox.org>), with any of its separators and decimal
+//! signs.
 //!
-//! Each set of an experiment's data is a file. Experiments with several sensors write `Accelerometer.csv`, `Gyroscope.csv` and
-//! `Linear Accelerometer.csv` (older ones `Linear Acceleration.csv`), whose columns are `Time (s)` and `Acceleration x (m/s^2)`
-//! or `X (m/s^2)`, and `Gyroscope x (rad/s)` or `X (rad/s)`; a linear acceleration is without gravity. Both Android and iOS
-//! give +1 g upwards at rest: on iOS `ExperimentSensorInput.swift` of `github.com/phyphox/phyphox-ios` multiplies by −9.81.
+//! Each data set of an experiment is a file. Experiments with several sensors write `Accelerometer.csv`,
+//! `Gyroscope.csv` and `Linear Accelerometer.csv` (older ones `Linear Acceleration.csv`), whose columns are `Time (s)`
+//! and `Acceleration x (m/s^2)` or `X (m/s^2)`, and `Gyroscope x (rad/s)` or `X (rad/s)`; a linear acceleration
+//! excludes gravity. Both Android and iOS give +1 g upwards at rest: on iOS `ExperimentSensorInput.swift` of
+//! `github.com/phyphox/phyphox-ios` multiplies by −9.81.
 
 use super::Decoded;
 use super::join::join;
@@ -37,10 +39,10 @@ pub(super) const TIME: &str = "Time (s)";
 const ACCELEROMETER: &str = "Accelerometer.csv";
 pub(super) const GYROSCOPE: &str = "Gyroscope.csv";
 
-/// Reads the accelerometer beside the gyroscope's text.
+/// Reads the accelerometer in addition to the gyroscope's text.
 ///
 /// # Errors
-/// If the accelerometer with gravity is missing, or a text is none of the format.
+/// If the accelerometer with gravity is missing, or a text is not of the format.
 pub(super) fn read(zipped: &mut Zipped<'_>, gyroscope: &[u8]) -> Result<Decoded, Error> {
     if !zipped.has(ACCELEROMETER) {
         return Err(Error::log(format!(

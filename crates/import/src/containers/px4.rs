@@ -1,15 +1,16 @@
 //! Logs of PX4: `ULog` (`.ulg`), version 1 (<https://docs.px4.io/main/en/dev_log/ulog_file_format.html>).
 //!
-//! Of the topics `sensor_combined`, `vehicle_imu` and the pair `sensor_gyro` and `sensor_accel` the first that is there is
-//! read. `sensor_combined` holds `gyro_rad` and `accelerometer_m_s2`, both as if of the gyroscope's `timestamp`, from which
-//! the accelerometer's is some milliseconds away. `vehicle_imu` holds increments of angle and velocity, which are divided by
-//! their intervals. Of the pair the accelerometer is interpolated onto the gyroscope's times.
+//! The first that is present of the topics `sensor_combined`, `vehicle_imu` and the pair `sensor_gyro` and
+//! `sensor_accel` is read. `sensor_combined` holds `gyro_rad` and `accelerometer_m_s2`, both taken to be at the
+//! gyroscope's `timestamp`, from which the accelerometer's is some milliseconds away. `vehicle_imu` holds increments of
+//! angle and velocity, which are divided by their intervals. Of the pair, the accelerometer is interpolated onto the
+//! gyroscope's times.
 //!
-//! The frame is x forward, y right, z down, and the accelerometer gives specific force: −1 g along z at rest. That is a
-//! sensor mounted upside down, a turn of all axes together, so no sign is changed.
+//! The frame is x forward, y right, z down, and the accelerometer gives specific force: −1 g along z at rest. That
+//! amounts to a sensor mounted upside down, a rotation of all axes together, so no sign is changed.
 //!
-//! Weighed: the crate `px4-ulog` 0.6 (MIT) ends at the first record that is damaged, needs a path for data that were
-//! appended, holds assertions about what it was fed, and flattens types that hold each other without a bound.
+//! Considered instead: the crate `px4-ulog` 0.6 (MIT) stops at the first damaged record, needs a path to read appended
+//! data, contains assertions about its input, and flattens nested types without a bound.
 
 use super::Decoded;
 use super::gather::Row;
@@ -41,14 +42,14 @@ pub(crate) const PX4: Description = Description {
     is_a_guess: false,
 };
 
-/// What stands instead of the accelerometer's time if it said nothing yet.
+/// The value that stands for the accelerometer's time as long as it has given none.
 const INVALID: f64 = i32::MAX as f64;
-/// A second in the unit of times.
+/// One second in the unit of times.
 const SECOND: f64 = 1e6;
-/// Names of the topics, in the order in which they are preferred.
+/// The names of the topics, in order of preference.
 const TOPICS: [&str; 4] = ["sensor_combined", "vehicle_imu", "sensor_gyro", "sensor_accel"];
 
-/// Where a topic's records hold what: places of time, of two sensors, and of one or two other numbers.
+/// The layout of a topic's records: the positions of time, of two sensors, and of one or two further numbers.
 #[derive(Debug)]
 struct Layout {
     topic: usize,
@@ -124,7 +125,7 @@ impl Gather for Sensors {
 /// Reads a log.
 ///
 /// # Errors
-/// If it holds no inertial sensor, or not the one that is wanted, or data that need a newer reader.
+/// If it holds no inertial sensor, or not the wanted one, or data that need a newer reader.
 pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Decoded, Error> {
     let sensor = || Numbered::new(options);
     let mut sensors = Sensors([sensor()?, sensor()?, sensor()?, sensor()?]);
@@ -157,7 +158,7 @@ impl Sensors {
             notes.push(note);
             stream
         } else {
-            // Another one of a topic is there, or none at all.
+            // Report that another instance of the topic is present, or else that no topic is.
             other.transpose()?;
             return Err(none(&reading.formats));
         };
@@ -167,7 +168,7 @@ impl Sensors {
     }
 }
 
-/// A log without an inertial sensor.
+/// The error for a log without an inertial sensor.
 fn none(formats: &Formats) -> Error {
     let found = listed(formats.topics().map(|topic| topic.name.as_str()));
     Error::log(format!(

@@ -1,5 +1,5 @@
-//! Messages of ROS that hold ranges, as their definitions tell: a range beside its anchor's name, a list of such pairs, or a
-//! list of ranges in the order of the anchors.
+//! ROS messages that hold ranges, identified by their definitions: a range with its anchor's name, a list of such
+//! pairs, or a list of ranges in the order of the anchors.
 //!
 //! | message | |
 //! |---|---|
@@ -7,9 +7,9 @@
 //! | `uwb_driver/UwbRange` | `distance`, `responder_id` (`github.com/ntu-aris/uwb_driver`) |
 //! | `nlink_parser/LinktrackTagframe0` | `dis_arr` (`github.com/nooploop-dev/nlink_parser`) |
 //! | `nlink_parser/LinktrackNodeframe2` | `nodes`, each with `id` and `dis` |
-//! | `msgs/Ranging` of GTEC | `range`, `anchorId`; whole numbers, whose unit has to be said (`github.com/GTEC-UDC/rosmsgs`) |
+//! | `msgs/Ranging` of GTEC | `range`, `anchorId`; integers, whose unit must be given (`github.com/GTEC-UDC/rosmsgs`) |
 //!
-//! and any other that names its fields so.
+//! Any other message with such field names is accepted as well.
 
 use super::definition::{Count, Definition, Field, Leaf, Of};
 use super::imu_message::Encoding;
@@ -17,15 +17,15 @@ use crate::names::named;
 use crate::options::Options;
 use crate::unit::{Quantity, Unit};
 
-/// The definition of `sensor_msgs/Range`, which a file may lack.
+/// The definition of `sensor_msgs/Range`, for files that lack it.
 const RANGE: &str = "Header header\nuint8 radiation_type\nfloat32 field_of_view\nfloat32 min_range\nfloat32 max_range\nfloat32 range\n";
 
-/// Names of a range, …
+/// Names of a field with a range.
 const RANGES: [&str; 6] = ["range", "distance", "dist", "dis", "d", "r"];
-/// … of a list of ranges, …
+/// Names of a field with a list of ranges.
 const LISTS: [&str; 8] =
     ["ranges", "distances", "dists", "disarr", "distance", "range", "dist", "dis"];
-/// … of its anchor, …
+/// Names of a field with a range's anchor.
 const ANCHORS: [&str; 14] = [
     "anchor",
     "anchorid",
@@ -42,18 +42,18 @@ const ANCHORS: [&str; 14] = [
     "nodeid",
     "macdest",
 ];
-/// … of that in a list alone, as beside a message's single range it may be the tag's, …
+/// Names that mean the anchor only within a list: beside a message's single range they may mean the tag.
 const IDS: [&str; 4] = ["id", "name", "node", "address"];
-/// … and of the tag.
+/// Names of a field with the tag.
 const TAGS: [&str; 8] =
     ["tag", "tagid", "tagname", "tagaddress", "requester", "requesterid", "fromid", "srcid"];
 
-/// What a range's own message says of its anchor.
+/// How a message identifies the anchor of a range.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Label {
-    /// Its name or number, or its place in a list.
+    /// By its name or number, or by its index in a list.
     Said(String),
-    /// Nothing but a frame, if that.
+    /// By a frame at most; the name may be empty.
     Frame(String),
 }
 
@@ -61,21 +61,21 @@ pub(crate) enum Label {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Heard {
     pub(crate) label: Label,
-    /// The tag's name or number, if it is said.
+    /// The name or number of the tag, if it is given.
     pub(crate) tag: Option<String>,
-    /// In the unit of the field.
+    /// The range, in the unit of the field.
     pub(crate) range: f64,
 }
 
-/// A message's ranges.
+/// The ranges in a message.
 #[derive(Debug, Default)]
 pub(super) struct Message {
-    /// µs; none without a stamp.
+    /// The stamp, µs; `None` if there is none.
     pub(super) stamp: Option<f64>,
     pub(super) heard: Vec<Heard>,
 }
 
-/// Where a message holds what.
+/// The layout of a message with ranges.
 #[derive(Debug)]
 pub(super) struct RangeMessage {
     definition: Definition,
@@ -83,16 +83,17 @@ pub(super) struct RangeMessage {
     anchor: Option<Vec<usize>>,
     tag: Option<Vec<usize>>,
     header: Option<usize>,
-    /// Whether the place in the list is the anchor.
+    /// Whether the index in the list identifies the anchor.
     is_list: bool,
-    /// The unit, if the field's name says it, or it is a fraction, which ROS has in m (REP 103).
+    /// The unit, if the field's name gives it, or if it is a floating-point number, for which ROS prescribes m (REP
+    /// 103).
     pub(super) unit: Option<Unit>,
     /// The name of the field.
     pub(super) field: String,
 }
 
 impl RangeMessage {
-    /// Of a type's name and definition; none if it holds no ranges.
+    /// The layout of a type, from its name and definition; `None` if it holds no ranges.
     pub(super) fn of(kind: &str, text: &[u8], options: &Options) -> Option<Self> {
         let text = std::str::from_utf8(text).unwrap_or_default();
         let is_range = matches!(kind, "sensor_msgs/Range" | "sensor_msgs/msg/Range");
@@ -118,12 +119,12 @@ impl RangeMessage {
         Some(Self { definition, range, anchor, tag, header, is_list, unit, field })
     }
 
-    /// Whether messages say themselves which anchor a range is to.
+    /// Whether the messages themselves identify the anchor of each range.
     pub(super) fn names_anchors(&self) -> bool {
         self.anchor.is_some() || self.is_list
     }
 
-    /// The ranges of a message; none if it is not of this type.
+    /// The ranges of a message; `None` if it is not of this type.
     pub(super) fn read(&self, encoding: Encoding, message: &[u8]) -> Option<Message> {
         let mut read = Message::default();
         let (mut ranges, mut anchors, mut tags) = (Vec::new(), Vec::new(), Vec::new());
@@ -169,7 +170,7 @@ fn words(leaf: Leaf<'_>) -> String {
     }
 }
 
-/// What a type's fields are.
+/// The fields of a type that were recognised.
 struct Found {
     range: Vec<usize>,
     anchor: Option<Vec<usize>>,

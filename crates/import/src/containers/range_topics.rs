@@ -1,4 +1,4 @@
-//! Topics of ROS in a file that hold ranges.
+//! ROS topics in a file that hold ranges.
 
 use super::catalogue::Catalogue;
 use super::chunks::{Announced, Messages};
@@ -17,18 +17,18 @@ pub(crate) struct Topic {
     is_heard: bool,
 }
 
-/// A message's range.
+/// A range from a message.
 #[derive(Debug)]
 pub(crate) struct Entry {
-    /// Its topic's place.
+    /// The index of its topic.
     pub(crate) topic: usize,
-    /// When it was sent and received, µs since 1970.
+    /// The times at which it was sent and received, µs since 1970.
     pub(crate) stamp: Option<f64>,
     pub(crate) receipt: f64,
     pub(crate) heard: Heard,
 }
 
-/// What topics there are, and what they say.
+/// The topics of a file, with their ranges.
 pub(crate) struct RangeTopics<'o> {
     options: &'o Options,
     catalogue: Catalogue<Topic>,
@@ -46,16 +46,16 @@ impl<'o> RangeTopics<'o> {
         }
     }
 
-    /// A topic by its place.
+    /// The name of a topic, by its index.
     pub(crate) fn name(&self, place: usize) -> &str {
         &self.catalogue.topics[place].name
     }
 
-    /// The topics that are wanted: the one or those below the one that is said, all that hold `sensor_msgs/Range`, or the
-    /// only other one.
+    /// The wanted topics: the one that an option names or those below it, else all that hold `sensor_msgs/Range`, else
+    /// the only other one.
     ///
     /// # Errors
-    /// If there is none, or several and nobody says which.
+    /// If there is none, or several and no option chooses.
     pub(crate) fn wanted(&self) -> Result<Vec<usize>, Error> {
         let bare = |name: &str| name.trim().trim_matches('/').to_owned();
         let topics = &self.catalogue.topics;
@@ -90,7 +90,7 @@ impl<'o> RangeTopics<'o> {
         self.alike(heard)
     }
 
-    /// One topic, or several that each are of an anchor.
+    /// Accepts one topic, or several that each belong to one anchor.
     fn alike(&self, places: Vec<usize>) -> Result<Vec<usize>, Error> {
         let names_anchors = |place: &usize| self.catalogue.topics[*place].message.names_anchors();
         if places.len() == 1 || !places.iter().any(names_anchors) {
@@ -102,10 +102,10 @@ impl<'o> RangeTopics<'o> {
         Err(Error::undecided(problem, format!("--topic {first}")))
     }
 
-    /// How much a topic's numbers are in m, and what is told of it.
+    /// The factor that converts a topic's numbers to m, and a note on the unit.
     ///
     /// # Errors
-    /// If nobody says the unit.
+    /// If neither the message nor an option gives the unit.
     pub(crate) fn scale(&self, place: usize) -> Result<(f64, String), Error> {
         let message = &self.catalogue.topics[place].message;
         let said = self.options.units.of("range");
@@ -140,7 +140,7 @@ impl Messages for RangeTopics<'_> {
             Some(read)
         });
         let Some(read) = read else {
-            // Its bytes were read, but it is none.
+            // Its bytes were read, but it is not such a message.
             self.losses.add(Fault::Torn, record, 0);
             return;
         };

@@ -1,8 +1,8 @@
-//! Bags of ROS 1, version 2.0 (<https://wiki.ros.org/Bags/Format/2.0>): chunks that are plain, bz2 or LZ4, or none. The index
-//! is not needed, so that a bag that was not closed is read as well.
+//! Bags of ROS 1, version 2.0 (<https://wiki.ros.org/Bags/Format/2.0>): with chunks that are uncompressed, bz2 or LZ4,
+//! or without chunks. The index is not needed, so a bag that was not closed is read as well.
 //!
-//! Weighed: the crate `rosbag` 0.6 (MIT or Apache-2.0, last release 2024) takes a path alone, panics where a bag was not closed,
-//! takes as much memory as a header says, and unpacks with libraries of C.
+//! Considered instead: the crate `rosbag` 0.6 (MIT or Apache-2.0, last release 2024) only takes a path, panics where a
+//! bag was not closed, allocates as much memory as a header claims, and decompresses with C libraries.
 
 use std::collections::BTreeMap;
 
@@ -22,14 +22,14 @@ use crate::options::Options;
 pub(crate) const ROS1: Description = topics::description(Format::Ros1, "ros1", "ROS 1 bag");
 
 const MAGIC: &[u8] = b"#ROSBAG V2.0\n";
-/// The header of records is no longer.
+/// The largest length of a record's header, bytes.
 const LONGEST: usize = 1 << 16;
 /// Kinds of records.
 const MESSAGE: u8 = 2;
 const CHUNK: u8 = 5;
 const CONNECTION: u8 = 7;
 
-/// Whether a file begins as bags of any version do.
+/// Whether a file begins as a bag of any version.
 pub(super) fn is_it(bytes: &[u8]) -> bool {
     bytes.starts_with(b"#ROSBAG V")
 }
@@ -37,7 +37,7 @@ pub(super) fn is_it(bytes: &[u8]) -> bool {
 /// Reads a bag.
 ///
 /// # Errors
-/// If it is of another version, holds no inertial sensor, or several and nobody says which, or unpacks to too much.
+/// If it is of another version, holds no inertial sensor, or several and no option chooses, or unpacks to too much.
 pub(super) fn read(bytes: &[u8], options: &Options) -> Result<Decoded, Error> {
     chunks::read(contents(bytes)?, Bag::default(), Topics::default())?.decoded(&ROS1, options)
 }
@@ -58,7 +58,7 @@ pub(super) fn levels<'o>(bytes: &[u8], options: &'o Options) -> Result<LevelTopi
     chunks::read(contents(bytes)?, Bag::default(), LevelTopics::new(options))
 }
 
-/// The records behind the first line.
+/// The records that follow the first line.
 fn contents(bytes: &[u8]) -> Result<&[u8], Error> {
     bytes.strip_prefix(MAGIC).ok_or_else(|| {
         let line = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
@@ -67,13 +67,13 @@ fn contents(bytes: &[u8]) -> Result<&[u8], Error> {
     })
 }
 
-/// What is told of connections.
+/// The connections read so far.
 #[derive(Debug, Default)]
 struct Bag {
     topics: BTreeMap<u32, usize>,
 }
 
-/// A record: its kind, the fields of its header, its data, of which the end may be missing.
+/// A record: its kind, the fields of its header, and its data, of which the end may be missing.
 struct Record<'a> {
     kind: u8,
     header: &'a [u8],
@@ -94,13 +94,13 @@ impl<'a> Record<'a> {
         Some(Self { kind, header, length, data: bytes.0 })
     }
 
-    /// A number of four bytes in its header.
+    /// A four-byte number in the record's header.
     fn number(&self, name: &[u8]) -> Option<u32> {
         Bytes(field(self.header, name)?).u32()
     }
 }
 
-/// The value of a field of a header.
+/// The value of a field in a header.
 fn field<'a>(header: &'a [u8], name: &[u8]) -> Option<&'a [u8]> {
     let mut bytes = Bytes(header);
     loop {

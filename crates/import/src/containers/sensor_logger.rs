@@ -1,12 +1,13 @@
 //! Zip files of CSV that Sensor Logger exports (Kelvin Choi, <https://github.com/tszheichoi/awesome-sensor-logger>).
 //!
-//! Each sensor is a file with columns `time` (ns since 1970), `seconds_elapsed`, `z`, `y`, `x`. `TotalAcceleration.csv` holds the
-//! accelerometer; `Accelerometer.csv` is without gravity, which `Gravity.csv` holds; `AccelerometerUncalibrated.csv` is the
-//! accelerometer as the system gives it (`UNITS.md` there). All are in m/s², on iOS the last one in g.
+//! Each sensor is a file with columns `time` (ns since 1970), `seconds_elapsed`, `z`, `y`, `x`. `TotalAcceleration.csv`
+//! holds the accelerometer; `Accelerometer.csv` excludes gravity, which `Gravity.csv` holds;
+//! `AccelerometerUncalibrated.csv` is the accelerometer as the system gives it (`UNITS.md` there). All are in m/s²,
+//! except that the last one is in g on iOS.
 //!
-//! On iOS all three have the other sign (`COORDINATES.md`), and so has gravity, unless "Standardise Units & Frames" was on.
-//! `Metadata.csv` tells both in its columns `platform` and `standardisation`; without it +1 g upwards at rest is taken and
-//! said. An option for the accelerometer's unit leaves its values as they are.
+//! On iOS all three have the opposite sign (`COORDINATES.md`), and so has gravity, unless "Standardise Units & Frames"
+//! was on. `Metadata.csv` tells both in its columns `platform` and `standardisation`; without it +1 g upwards at rest
+//! is assumed and reported. An option for the accelerometer's unit leaves its values as they are.
 
 use super::Decoded;
 use super::gather::Stream;
@@ -41,9 +42,9 @@ pub(crate) const SENSOR_LOGGER: Description = Description {
 };
 
 const TIME: &str = "time";
-/// A second in the unit of times.
+/// One second in the unit of times.
 const SECOND: f64 = 1e9;
-/// What the header of each text holds.
+/// A column that the header of each text contains.
 pub(super) const ELAPSED: &str = "seconds_elapsed";
 
 const TOTAL: &str = "TotalAcceleration.csv";
@@ -52,10 +53,10 @@ const GRAVITY: &str = "Gravity.csv";
 const UNCALIBRATED: &str = "AccelerometerUncalibrated.csv";
 const METADATA: &str = "Metadata.csv";
 
-/// Reads the accelerometer beside the gyroscope's text.
+/// Reads the accelerometer in addition to the gyroscope's text.
 ///
 /// # Errors
-/// If an accelerometer with gravity is missing, or a text is none of the format.
+/// If an accelerometer with gravity is missing, or a text is not of the format.
 pub(super) fn read(
     zipped: &mut Zipped<'_>,
     gyroscope: &[u8],
@@ -91,10 +92,10 @@ pub(super) fn read(
     Ok(Decoded { table: joined.named(&SENSOR_LOGGER, TIME, damage), notes })
 }
 
-/// Where the accelerometer with gravity comes from.
+/// The source of the accelerometer with gravity.
 enum Source {
     Of(&'static str),
-    /// Of an acceleration without gravity, and gravity.
+    /// The sum of an acceleration without gravity and of gravity.
     Sum,
 }
 
@@ -116,9 +117,9 @@ impl Source {
     }
 }
 
-/// An acceleration without gravity, with gravity at its times.
+/// Adds gravity to an acceleration without it, at the times of the latter.
 fn sum(linear: Stream, gravity: &Stream) -> Result<Stream, Error> {
-    // The places of the gyroscope carry what has to be added.
+    // The columns of the gyroscope carry the acceleration that gravity is added to.
     let [time, ax, ay, az, ..] = linear.columns;
     let none = vec![0.0; time.len()];
     let columns = [time, none.clone(), none.clone(), none, ax, ay, az];
@@ -131,10 +132,10 @@ fn sum(linear: Stream, gravity: &Stream) -> Result<Stream, Error> {
     Ok(sum)
 }
 
-/// The telephone, as far as `Metadata.csv` tells.
+/// The properties of the telephone, as far as `Metadata.csv` tells.
 struct Phone {
     is_ios: Option<bool>,
-    /// Whether all systems' units and signs are Android's.
+    /// Whether units and signs follow Android's on all systems.
     is_standard: bool,
 }
 
@@ -160,7 +161,7 @@ impl Phone {
         Ok(Self { is_ios, is_standard: value(b"standardisation").as_deref() == Some("true") })
     }
 
-    /// Turns an accelerometer to m/s² and +1 g upwards at rest; what is to be said of that.
+    /// Converts an accelerometer to m/s² and +1 g upwards at rest; returns a note to report.
     fn put_right(&self, forces: &mut Stream, is_raw: bool) -> Result<Option<String>, Error> {
         let (scale, note) = match self.is_ios {
             _ if self.is_standard => return Ok(None),

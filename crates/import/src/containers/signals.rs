@@ -1,4 +1,4 @@
-//! Fields of an autopilot's messages over time, as many of them as are wanted.
+//! The wanted fields of an autopilot's messages, over time.
 
 use super::dataflash;
 use super::gather::Losses;
@@ -11,28 +11,28 @@ use crate::flight::{Channel, Family, Source};
 use crate::options::Options;
 use crate::part::Part;
 
-/// More messages are not told of.
+/// The largest number of messages whose names are kept for error messages.
 const MOST_NAMES: usize = 100;
-/// Labels of times, and how many µs one is.
+/// The labels of times, and their unit in µs.
 const TIMES: [(&str, f64); 2] = [("TimeUS", 1.0), ("TimeMS", 1e3)];
-/// Labels of a sensor's number.
+/// The labels of a sensor's number.
 const NUMBERS: [&str; 3] = ["I", "Inst", "Instance"];
 
-/// What was found.
+/// The result of reading the wanted fields.
 #[derive(Debug)]
 pub(crate) struct Signals {
-    /// In the order in which they were wanted.
+    /// The channels, in the order in which they were wanted.
     pub(crate) channels: Vec<Channel>,
-    /// Names of messages.
+    /// The names of the messages in the file.
     pub(crate) names: Vec<String>,
-    /// What is to be told of the file.
+    /// Notes on the file.
     pub(crate) notes: Vec<String>,
     pub(crate) losses: Losses,
-    /// What it is made of.
+    /// What the file consists of: lines or records.
     pub(crate) part: Part,
 }
 
-/// The autopilot that wrote a file, and whether it is text; none if none did.
+/// The autopilot that wrote a file, and whether it is text; `None` if no autopilot did.
 pub(crate) fn autopilot(bytes: &[u8]) -> Option<(Family, bool)> {
     if dataflash::is_it(bytes) {
         Some((Family::ArduPilot, false))
@@ -45,10 +45,10 @@ pub(crate) fn autopilot(bytes: &[u8]) -> Option<(Family, bool)> {
     }
 }
 
-/// Reads what is wanted, of sensors with a number the one that `--topic` says, or number 0.
+/// Reads the wanted fields; of numbered sensors, those of the number that `--topic` gives, or number 0.
 ///
 /// # Errors
-/// If there is no sensor of the number that is said, or the file needs a newer reader.
+/// If there is no sensor with the given number, or the file needs a newer reader.
 pub(crate) fn signals(
     bytes: &[u8],
     family: Family,
@@ -83,7 +83,7 @@ pub(crate) fn signals(
 struct Wanted {
     signals: Signals,
     number: u32,
-    /// Whether there is a sensor of that number.
+    /// Whether a sensor with the wanted number was seen.
     is_seen: bool,
 }
 
@@ -95,7 +95,7 @@ impl Wanted {
         }
     }
 
-    /// The places of the channels that a message may fill.
+    /// The indices of the channels that a message may fill.
     fn of(&self, message: &str) -> Vec<usize> {
         let channels = self.signals.channels.iter().enumerate();
         let own = channels.filter(|(_, channel)| channel.source.message == message);
@@ -103,11 +103,11 @@ impl Wanted {
     }
 }
 
-/// Where a message of `ArduPilot` holds what.
+/// The layout of an `ArduPilot` message.
 pub(super) struct Labels {
     time: (usize, f64),
     number: Option<usize>,
-    /// Channels and their fields.
+    /// The channels, each with the index of its field.
     values: Vec<(usize, usize)>,
 }
 
@@ -151,10 +151,10 @@ impl dataflash::Gather for Wanted {
     }
 }
 
-/// Where the records of a topic of PX4 hold what.
+/// The layout of the records of a PX4 topic.
 pub(super) struct Places {
     time: Place,
-    /// Channels and their fields: one number, or four of a quaternion.
+    /// The channels, each with its fields: one number, or the four of a quaternion.
     values: Vec<(usize, Vec<Place>)>,
 }
 
@@ -199,7 +199,7 @@ impl ulog_reader::Gather for Wanted {
     }
 }
 
-/// The pitch of a quaternion from body (x forward, y right, z down) to north, east, down, rad, nose up.
+/// The pitch, rad, nose up, of a quaternion from body (x forward, y right, z down) to north, east, down.
 fn pitch([w, x, y, z]: [f64; 4]) -> f64 {
     let square = w * w + x * x + y * y + z * z;
     (2.0 * (w * y - z * x) / square).clamp(-1.0, 1.0).asin()
@@ -213,7 +213,7 @@ mod tests {
     fn a_turn_about_the_right_wing_is_pitch() {
         let (half, yaw) = (0.15_f64, 0.7_f64);
         assert!((pitch([half.cos(), 0.0, half.sin(), 0.0]) - 0.3).abs() < 1e-12);
-        // Behind a turn about the vertical it is the same.
+        // A rotation about the vertical does not change it.
         let turned = [
             yaw.cos() * half.cos(),
             -yaw.sin() * half.sin(),

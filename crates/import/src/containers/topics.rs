@@ -1,4 +1,4 @@
-//! Topics of ROS in a file, of which one is an inertial sensor's that is wanted.
+//! ROS topics in a file, one of which is the wanted inertial sensor's.
 
 use super::Decoded;
 use super::catalogue::Catalogue;
@@ -21,10 +21,10 @@ const SENSORS: [&str; 6] = [
     "angular_velocity.y",
     "angular_velocity.z",
 ];
-/// Its time, µs since 1970.
+/// The time column, µs since 1970.
 const TIME: &str = "header.stamp";
 
-/// A format of files that hold the message `Imu`.
+/// The description of a file format that holds the message `Imu`.
 pub(super) const fn description(
     format: Format,
     name: &'static str,
@@ -48,13 +48,13 @@ pub(super) const fn description(
 struct Topic {
     name: String,
     stream: Stream,
-    /// When each message was received, µs.
+    /// The time of receipt of each message, µs.
     receipts: Vec<f64>,
-    /// How its messages are written, if `host-sim` wrote them.
+    /// The layout of its messages, if `host-sim` wrote them.
     own: Option<OwnImu>,
 }
 
-/// What topics there are.
+/// The topics of a file.
 #[derive(Debug, Default)]
 pub(super) struct Topics {
     inertial: Catalogue<Topic>,
@@ -62,10 +62,10 @@ pub(super) struct Topics {
 }
 
 impl Topics {
-    /// The table of the one that is wanted.
+    /// The table of the wanted topic.
     ///
     /// # Errors
-    /// If there is none, or several and nobody says which.
+    /// If there is none, or several and no option chooses.
     pub(super) fn decoded(
         mut self,
         known: &Description,
@@ -119,7 +119,7 @@ impl Topics {
         }
     }
 
-    /// A file without an inertial sensor.
+    /// The error for a file without an inertial sensor.
     fn none(&self) -> Error {
         let is_own = |other: &str| other.contains("(kestirim.") || other.contains("(foxglove.");
         if self.inertial.others().len() > 0 && self.inertial.others().all(is_own) {
@@ -172,7 +172,7 @@ impl Messages for Topics {
                 topic.stream.push(record, row);
                 topic.receipts.push(receipt);
             }
-            // Its bytes were read, but it is none.
+            // Its bytes were read, but it is not such a message.
             _ => self.losses.add(Fault::Torn, record, 0),
         }
     }

@@ -1,4 +1,4 @@
-//! The records of `ULog`, and what those of each topic hold.
+//! The records of `ULog`, and the layout of each topic's.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -6,16 +6,16 @@ use std::rc::Rc;
 use super::bytes::Bytes;
 use super::walk::Framing;
 
-/// Size and kind of a record.
+/// The size of the length and kind of a record, bytes.
 const HEADER: usize = 3;
-/// What a record of kind `S` holds.
+/// The content of a record of kind `S`.
 const SYNC: [u8; 8] = [0x2f, 0x73, 0x13, 0x20, 0x25, 0x0c, 0xbb, 0x12];
-/// How many fields are looked at in all to tell sizes, as types may hold each other.
+/// The total number of fields that are visited to compute sizes: types may contain each other.
 const MOST_FIELDS: usize = 1_000_000;
-/// How deep types hold each other.
+/// The deepest nesting of types.
 const DEEPEST: usize = 10;
 
-/// A type of number.
+/// A numeric type.
 #[derive(Debug, Clone, Copy)]
 enum Number {
     Unsigned(usize),
@@ -50,7 +50,7 @@ impl Number {
     }
 }
 
-/// Where a number stands in a record of a topic.
+/// The position and type of a number in a topic's record.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     from: usize,
@@ -58,7 +58,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The number in a record's data.
+    /// Reads the number from a record's data.
     pub(super) fn value(self, data: &[u8]) -> Option<f64> {
         let mut bytes = Bytes(data.get(self.from..)?);
         Some(match self.number {
@@ -77,7 +77,7 @@ impl Place {
     }
 }
 
-/// A field of a type: so many of another type.
+/// A field of a type: `count` values of another type.
 #[derive(Debug, Clone)]
 struct Field {
     of: String,
@@ -85,16 +85,16 @@ struct Field {
     name: String,
 }
 
-/// What is known of the records of a topic.
+/// The definition of a topic's records.
 #[derive(Debug)]
 pub(super) struct Topic {
     pub(super) name: String,
     pub(super) instance: u8,
-    /// How many bytes its data take, with and without the padding behind them, if that can be told.
+    /// The size of its data with and without the trailing padding, bytes, if it can be determined.
     sizes: Option<[usize; 2]>,
 }
 
-/// What is told of types and topics.
+/// The types and topics defined so far.
 #[derive(Debug, Default)]
 pub(super) struct Formats {
     types: BTreeMap<String, Rc<[Field]>>,
@@ -103,7 +103,7 @@ pub(super) struct Formats {
 }
 
 impl Formats {
-    /// Takes a record of kind `F`, `name:type field;…`, if it is the first of its name.
+    /// Takes a record of kind `F`, `name:type field;…`, if it is the first with its name.
     pub(super) fn define(&mut self, body: &[u8]) -> Option<()> {
         let (name, fields) = std::str::from_utf8(body).ok()?.split_once(':')?;
         let field = |text: &str| {
@@ -120,7 +120,7 @@ impl Formats {
         Some(())
     }
 
-    /// Takes a record of kind `A`, the first of its number: which topic that is.
+    /// Takes a record of kind `A`, if it is the first with its number; returns the topic.
     pub(super) fn subscribe(&mut self, body: &[u8]) -> Option<(u16, &Topic)> {
         let mut bytes = Bytes(body);
         let (instance, id) = (bytes.u8()?, bytes.u16()?);
@@ -139,7 +139,7 @@ impl Formats {
         self.topics.values()
     }
 
-    /// Where a number stands in the records of a type.
+    /// The position of a number in the records of a type.
     pub(super) fn place(&mut self, of: &str, field: &str, index: usize) -> Option<Place> {
         let fields = self.types.get(of)?.clone();
         let mut from = 0_usize;
@@ -153,7 +153,7 @@ impl Formats {
         None
     }
 
-    /// How many bytes a type takes.
+    /// The size of a type, bytes.
     fn size(&mut self, of: &str, depth: usize) -> Option<usize> {
         if let Some(number) = Number::of(of) {
             return Some(number.size());
@@ -172,7 +172,7 @@ impl Formats {
         self.size(&field.of, depth)?.checked_mul(field.count)
     }
 
-    /// How many bytes of padding stand at a type's end, which are not written.
+    /// The size of the padding at the end of a type, bytes; it is not written.
     fn padding(&self, of: &str) -> usize {
         let last = self.types.get(of).and_then(|fields| fields.last());
         last.filter(|field| field.name.starts_with("_padding")).map_or(0, |field| field.count)
@@ -185,7 +185,7 @@ impl Formats {
         Some((id, bytes.0))
     }
 
-    /// Whether a record may be of a known kind, by its size and as much of its body as there is.
+    /// Whether a record may be of a known kind, judging by its size and as much of its body as there is.
     fn is_known(&self, kind: u8, size: usize, body: &[u8]) -> bool {
         let is_text =
             |text: &[u8]| text.iter().all(|&byte| byte == b' ' || byte.is_ascii_graphic());

@@ -1,4 +1,4 @@
-//! A walk through the records of a `ULog`, all its sections.
+//! Walks through the records of a `ULog`, in all its sections.
 
 use std::collections::BTreeMap;
 
@@ -9,37 +9,37 @@ use super::walk::{Step, Walk};
 use crate::error::Error;
 
 const MAGIC: [u8; 7] = *b"ULog\x01\x12\x35";
-/// Magic, version and time.
+/// The size of magic, version and time, bytes.
 const HEADER: usize = 16;
 
-/// Whether a file begins as `ULog` does.
+/// Whether a file begins with the magic of `ULog`.
 pub(super) fn is_it(bytes: &[u8]) -> bool {
     bytes.starts_with(&MAGIC)
 }
 
-/// What is gathered from the topics of a log.
+/// Collects data from the topics of a log.
 pub(super) trait Gather {
-    /// Where a topic's records hold what.
+    /// The layout of a topic's records.
     type Layout;
 
-    /// Takes a topic: where its records hold what is wanted, if they do.
+    /// Takes a topic; returns the layout of its records if they are wanted.
     fn define(&mut self, formats: &mut Formats, topic: &str, instance: u8) -> Option<Self::Layout>;
 
-    /// Takes a record's data; none if they are too short.
+    /// Takes a record's data; `None` if they are too short.
     fn take(&mut self, layout: &Self::Layout, record: usize, data: &[u8]) -> Option<()>;
 }
 
-/// What is read beside what is gathered.
+/// What is read apart from the collected data.
 #[derive(Debug, Default)]
 pub(super) struct Reading {
     pub(super) formats: Formats,
     pub(super) losses: Losses,
-    /// Pauses of the logger: how many, and ms.
+    /// The dropouts of the logger: their number, and their total duration in ms.
     dropouts: (u32, u32),
 }
 
 impl Reading {
-    /// A sentence about pauses of the logger, if there were any.
+    /// A sentence about dropouts of the logger, if there were any.
     pub(super) fn pauses(&self) -> Option<String> {
         let (count, sum) = self.dropouts;
         (count > 0).then(|| format!("dropouts of the logger: {count}, {sum} ms in all"))
@@ -59,7 +59,7 @@ pub(super) fn read<G: Gather>(bytes: &[u8], gather: &mut G) -> Result<Reading, E
     Ok(reader.reading)
 }
 
-/// The main section, and those that were appended.
+/// The main section, and the appended ones.
 fn sections(bytes: &[u8]) -> Result<Vec<&[u8]>, Error> {
     let whole = bytes.get(HEADER..).unwrap_or_default();
     let flags = match whole {
@@ -93,7 +93,7 @@ struct Reader<'a, G: Gather> {
 }
 
 impl<G: Gather> Reader<'_, G> {
-    /// Reads a section behind so many records: how many there are then.
+    /// Reads a section after `number` records; returns the number of records after it.
     fn section(&mut self, bytes: &[u8], number: usize) -> usize {
         let mut walk = Walk::new(bytes, number);
         while let Some(step) = walk.next(&self.reading.formats) {

@@ -1,7 +1,7 @@
-//! Compressed pieces of a file.
+//! Decompression of pieces of a file.
 //!
-//! LZ4 is unpacked by `lz4_flex`, Zstandard by `ruzstd`, bz2 by `bzip2-rs`, all in Rust alone; they take little more memory
-//! than what comes out. Weighed for bz2: `bzip2` 0.6, newer and faster, has a licence of its own.
+//! LZ4 is decompressed by `lz4_flex`, Zstandard by `ruzstd`, bz2 by `bzip2-rs`, all in pure Rust; they take little more
+//! memory than their output. Considered for bz2: `bzip2` 0.6, which is newer and faster, has a licence of its own.
 
 use std::borrow::Cow;
 use std::io::Read;
@@ -13,7 +13,7 @@ use ruzstd::decoding::StreamingDecoder;
 use super::LARGEST;
 use crate::error::Error;
 
-/// How a piece is compressed.
+/// The compression of a piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Compression {
     None,
@@ -23,7 +23,7 @@ pub(super) enum Compression {
 }
 
 impl Compression {
-    /// By its name in a file.
+    /// The compression with this name in a file.
     pub(super) fn of(name: &[u8]) -> Option<Self> {
         match name {
             b"" | b"none" => Some(Self::None),
@@ -35,7 +35,7 @@ impl Compression {
     }
 }
 
-/// How many bytes may be unpacked yet.
+/// The number of bytes that may still be unpacked.
 #[derive(Debug)]
 pub(super) struct Budget(u64);
 
@@ -46,7 +46,7 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// Unpacks a piece as far as it can be unpacked, up to the size that is told.
+    /// Unpacks a piece as far as possible, up to the announced size.
     ///
     /// # Errors
     /// If all pieces together are too large.
@@ -65,7 +65,7 @@ impl Budget {
         // A piece may hold several frames.
         while (unpacked.len() as u64) < size && !rest.is_empty() {
             let (before, left) = (unpacked.len(), size - unpacked.len() as u64);
-            // What comes out before an error is right as far as it goes; the size tells that there is more.
+            // The output before an error is right as far as it goes; the size tells that more is missing.
             match compression {
                 Compression::Zstd => match StreamingDecoder::new(&mut rest) {
                     Ok(frame) => drop(frame.take(left).read_to_end(&mut unpacked)),

@@ -1,21 +1,21 @@
-//! A walk from record to record, over stretches that cannot be read.
+//! Walks from record to record, over stretches that cannot be read.
 
 use crate::damage::Fault;
 
-/// How records are told apart.
+/// The framing of records.
 pub(super) trait Framing {
-    /// The length of a record that begins with these bytes, if one may; it may be longer than they are. Records of kinds
-    /// that are not known only follow readable ones (`is_in_sequence`).
+    /// The length of the record that these bytes may begin, which may exceed theirs; `None` if they cannot begin one.
+    /// Records of unknown kinds are only accepted directly behind readable ones (`is_in_sequence`).
     fn length(&self, bytes: &[u8], is_in_sequence: bool) -> Option<usize>;
 
-    /// Whether a record may begin with these bytes, which follow another one that may tell what this one is.
+    /// Whether a record may begin with these bytes, which directly follow another record; used to confirm that one.
     fn follows(&self, bytes: &[u8]) -> bool;
 
-    /// Where a record may begin next, at least one byte on.
+    /// The offset, of at least one byte, at which a record may begin next.
     fn candidate(&self, bytes: &[u8]) -> Option<usize>;
 }
 
-/// What comes next.
+/// One step of a walk.
 #[derive(Debug, PartialEq)]
 pub(super) enum Step<'a> {
     /// A record.
@@ -24,7 +24,7 @@ pub(super) enum Step<'a> {
     Lost(Fault, &'a [u8]),
 }
 
-/// A walk through bytes.
+/// A walk through the records in bytes.
 #[derive(Debug)]
 pub(super) struct Walk<'a> {
     rest: &'a [u8],
@@ -33,12 +33,12 @@ pub(super) struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// Begins behind so many records.
+    /// Begins a walk after `number` records.
     pub(super) fn new(bytes: &'a [u8], number: usize) -> Self {
         Self { rest: bytes, number }
     }
 
-    /// The next step; none at the end.
+    /// The next step; `None` at the end.
     pub(super) fn next(&mut self, framing: &impl Framing) -> Option<Step<'a>> {
         if self.rest.is_empty() {
             return None;
@@ -66,7 +66,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The length of a whole record that begins with these bytes and that another one or the end follows.
+/// The length of the complete record that these bytes begin with, if another record or the end follows it.
 fn whole(framing: &impl Framing, bytes: &[u8], is_in_sequence: bool) -> Option<usize> {
     let length = framing.length(bytes, is_in_sequence).filter(|&length| length > 0)?;
     let rest = bytes.get(length..)?;

@@ -1,7 +1,7 @@
 //! Texts of known names in a zip file.
 //!
-//! The crate `zip` unpacks them; it reads the directory at the file's end, so a file that was cut off is refused. Names in
-//! folders count as well, those that macOS adds do not.
+//! The crate `zip` unpacks them; it reads the directory at the file's end, so a truncated file is refused. Names in
+//! folders count as well, except those that macOS adds.
 
 use std::io::{Cursor, Read};
 
@@ -10,16 +10,16 @@ use zip::ZipArchive;
 use super::LARGEST;
 use crate::error::{Error, listed};
 
-/// A zip file whose texts are unpacked one by one.
+/// A zip file whose texts are unpacked one at a time.
 pub(super) struct Zipped<'a> {
     archive: ZipArchive<Cursor<&'a [u8]>>,
-    /// Places and names without folders.
+    /// The indices of the texts, and their names without folders.
     names: Vec<(usize, String)>,
-    /// How many bytes may be unpacked yet.
+    /// The number of bytes that may still be unpacked.
     left: u64,
 }
 
-/// Whether a file begins as zip files do.
+/// Whether a file begins as a zip file.
 pub(super) fn is_it(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06")
 }
@@ -44,7 +44,7 @@ impl<'a> Zipped<'a> {
         Ok(Self { archive, names, left: LARGEST })
     }
 
-    /// The names of its texts, for a complaint.
+    /// The names of the texts in the archive, for error messages.
     pub(super) fn listed(&self) -> String {
         listed(self.names.iter().map(|(_, name)| name.as_str()))
     }
@@ -56,7 +56,7 @@ impl<'a> Zipped<'a> {
     /// Unpacks a text.
     ///
     /// # Errors
-    /// If there is none of this name or more than one, if it is damaged, and if all together are too large.
+    /// If there is none or more than one of this name, if it is damaged, or if all texts together are too large.
     pub(super) fn unpack(&mut self, name: &str) -> Result<Vec<u8>, Error> {
         let mut places = self.names.iter().filter(|(_, known)| known == name);
         let place = match (places.next(), places.next()) {

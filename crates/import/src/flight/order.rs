@@ -1,22 +1,22 @@
-//! Times that only grow.
+//! Strictly increasing times.
 
-/// Beyond any clock, µs: three centuries.
+/// The latest plausible time, µs: three centuries, beyond any clock.
 const LATEST: f64 = 1e16;
 
-/// The places of the longest sequence of times that grows from one to the next; what is no time has no place.
+/// The indices of the longest strictly increasing subsequence of times; invalid times are left out.
 pub(super) fn growing(times: &[f64]) -> Vec<usize> {
     let is_time = |time: &f64| time.abs() <= LATEST;
     if times.windows(2).all(|pair| pair[0] < pair[1]) && times.iter().all(is_time) {
         return (0..times.len()).collect();
     }
-    // The last place of the best sequence of each length, and what stands before each place.
+    // The last index of the best sequence of each length, and the predecessor of each index.
     let mut ends: Vec<usize> = Vec::new();
     let mut before = vec![None; times.len()];
     for (place, time) in times.iter().enumerate().filter(|(_, time)| is_time(time)) {
         let length = ends.partition_point(|&end| times[end] < *time);
         before[place] = length.checked_sub(1).map(|shorter| ends[shorter]);
         match ends.get_mut(length) {
-            // Of the same time the first is kept.
+            // Of equal times the first is kept.
             Some(end) if times[*end] == *time => {}
             Some(end) => *end = place,
             None => ends.push(place),

@@ -1,13 +1,13 @@
-//! Samples of several sensors and commands as rows.
+//! Combines the samples of several sensors and commands into rows.
 
 use super::{Channel, Row};
 
-/// A command holds until the next one, but no longer than this, µs.
+/// The longest time for which a command holds without a new one, µs.
 const LONGEST_HOLD: f64 = 1e6;
-/// The quantities whose samples become rows, in the order in which they are preferred: q, θ, V, α.
+/// The quantities whose samples may define the rows, in order of preference: q, θ, V, α.
 const BASES: [usize; 4] = [1, 3, 2, 0];
 
-/// The rows, and how many samples have no command before them.
+/// The rows, and the number of samples that no command precedes.
 pub(super) fn of(channels: &[Option<Channel>; 6]) -> (Vec<Row>, usize) {
     let base = BASES.into_iter().find_map(|quantity| channels[quantity].as_ref());
     let Some(base) = base else { return (Vec::new(), 0) };
@@ -33,7 +33,7 @@ pub(super) fn of(channels: &[Option<Channel>; 6]) -> (Vec<Row>, usize) {
     (rows, without)
 }
 
-/// The middle one of the intervals; 0 if there is none.
+/// The median interval between times; 0 if there is none.
 fn usual_interval(times: &[f64]) -> f64 {
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps.len() / 2;
@@ -43,7 +43,7 @@ fn usual_interval(times: &[f64]) -> f64 {
     *steps.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// The place of the time nearest to another one, of at least one time.
+/// The index of the time nearest to another one; `times` must not be empty.
 fn nearest(times: &[f64], time: f64) -> usize {
     let after = times.partition_point(|&known| known < time);
     match (after.checked_sub(1), times.get(after)) {
@@ -53,7 +53,7 @@ fn nearest(times: &[f64], time: f64) -> usize {
     }
 }
 
-/// The last command up to a time, if it is not old.
+/// The last command before or at a time, unless it is too old.
 fn held(channel: &Channel, time: f64) -> Option<f64> {
     let place = channel.times.partition_point(|&known| known <= time).checked_sub(1)?;
     let value = channel.values[place];

@@ -1,4 +1,4 @@
-//! Which fields of an autopilot's messages hold what.
+//! The fields of an autopilot's messages that hold the quantities of a flight.
 
 use std::fmt;
 
@@ -7,10 +7,10 @@ use crate::error::{Error, quoted};
 use crate::options::Options;
 use crate::unit::{Quantity, Unit};
 
-/// What a flight holds, by the names of columns.
+/// The quantities of a flight, by the names of their columns.
 pub(crate) const NAMES: [&str; 6] = ["alpha", "q", "V", "theta", "delta_e", "delta_t"];
 
-/// A program that flies.
+/// The autopilot program that wrote a log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Family {
     ArduPilot,
@@ -26,13 +26,13 @@ impl fmt::Display for Family {
     }
 }
 
-/// What is known of a field.
+/// A field that is known to hold a quantity.
 struct Known {
     quantity: usize,
     field: &'static str,
-    /// The letters of its unit; nothing if the log does not tell it.
+    /// The symbol of its unit; empty if the log does not tell it.
     unit: &'static str,
-    /// What is to be told of it.
+    /// A remark on the field that is reported to the user.
     note: Option<&'static str>,
 }
 
@@ -72,13 +72,13 @@ impl Family {
         }
     }
 
-    /// The field that usually holds a quantity; nothing if none does.
+    /// The field that usually holds a quantity; empty if there is none.
     pub(crate) fn usual(self, quantity: usize) -> &'static str {
         let mut known = self.known().iter();
         known.find(|known| known.quantity == quantity).map_or("", |known| known.field)
     }
 
-    /// What a command of the elevator means, and the option that says how much that deflects.
+    /// The range of elevator commands, and the value of the option that gives the deflection they stand for.
     fn travel(self) -> (&'static str, &'static str) {
         match self {
             Self::ArduPilot => ("-4500 to 4500", "-0.0056deg"),
@@ -90,13 +90,13 @@ impl Family {
 /// A field of a message that holds a quantity.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Source {
-    /// A place in [`NAMES`].
+    /// The index in [`NAMES`].
     pub(crate) quantity: usize,
     pub(crate) message: String,
     pub(crate) field: String,
-    /// Which of several numbers under this name.
+    /// The index among several numbers of this name.
     pub(crate) index: usize,
-    /// Whether it holds a quaternion, whose pitch is wanted.
+    /// Whether the field holds a quaternion, from which the pitch is computed.
     pub(crate) is_quaternion: bool,
     pub(crate) note: Option<&'static str>,
     unit: Option<Unit>,
@@ -116,7 +116,7 @@ impl Source {
         Some(Self { quantity, message, field, index, is_quaternion, note, unit, is_negative })
     }
 
-    /// As a column is called.
+    /// The name of the field as an option would give it.
     fn name(&self) -> String {
         let index = if self.index > 0 { format!("[{}]", self.index) } else { String::new() };
         format!("{}.{}{index}", self.message, self.field)
@@ -134,10 +134,10 @@ fn quantity_of(quantity: usize) -> Quantity {
     ][quantity]
 }
 
-/// The fields that are looked for, in the order in which they are preferred.
+/// The fields to look for, in order of preference.
 ///
 /// # Errors
-/// If an option names a field otherwise than it should.
+/// If an option names a field in the wrong form.
 pub(super) fn wanted(family: Family, options: &Options) -> Result<Vec<Source>, Error> {
     let mut sources = Vec::new();
     for (quantity, name) in NAMES.iter().enumerate() {
@@ -159,14 +159,14 @@ pub(super) fn wanted(family: Family, options: &Options) -> Result<Vec<Source>, E
     Ok(sources)
 }
 
-/// What a field said over time.
+/// The values of one field over time.
 #[derive(Debug)]
 pub(crate) struct Channel {
     pub(crate) source: Source,
-    /// µs
+    /// The times of the values, µs.
     pub(crate) times: Vec<f64>,
     pub(crate) values: Vec<f64>,
-    /// The record of each.
+    /// The number of the record that each value is from.
     pub(crate) records: Vec<usize>,
 }
 
@@ -181,10 +181,10 @@ impl Channel {
         self.records.push(record);
     }
 
-    /// Turns its values into those of the SI: what is to be told.
+    /// Converts the values to SI units and returns a sentence to report.
     ///
     /// # Errors
-    /// [`Error::Undecided`] if nobody says the unit.
+    /// [`Error::Undecided`] if neither the log nor an option tells the unit.
     pub(super) fn in_si(&mut self, options: &Options) -> Result<String, Error> {
         let (source, name) = (&self.source, NAMES[self.source.quantity]);
         let unit = options.units.of(name).or_else(|| source.unit.clone());
@@ -197,7 +197,7 @@ impl Channel {
         Ok(format!("{name} = {sign}{} in {unit}", source.name()))
     }
 
-    /// Leaves out the fewest samples that are in the way of times that only grow: their records.
+    /// Drops the fewest samples that keep the times from increasing strictly; returns their records.
     pub(super) fn put_in_order(&mut self) -> Vec<usize> {
         let kept = order::growing(&self.times);
         if kept.len() == self.times.len() {

@@ -1,21 +1,22 @@
-//! Texts `data_inert.txt` of `OpenShoe` (KTH, ISC licence), as `settings.m` of its Matlab implementation reads them: a header of
-//! 32 words, then `%x  %f %f %f  %f %f %f  %i %x  %i  %f %f %f  %f  %f %f %f`.
+//! Texts `data_inert.txt` of `OpenShoe` (KTH, ISC licence), as `settings.m` of its Matlab implementation reads them: a
+//! header of 32 words, then `%x  %f %f %f  %f %f %f  %i %x  %i  %f %f %f  %f  %f %f %f`.
 //!
-//! Those of the first prototype, with a `MicroStrain` 3DM-GX2, name their columns: a byte, three accelerations in g, three
-//! rates in rad/s, a counter, a checksum, a number, three times in s since 1970, of which the first is filtered, Hz, G. Their
-//! names hold blanks, so columns are known by their places. Those that `logging_inertial_data.m` writes of the embedded
-//! module have 32 dummies for a header, m/s² and rad/s, and zeros for the rest: their samples are only counted.
+//! Texts of the first prototype, with a `MicroStrain` 3DM-GX2, name their columns: a byte, three accelerations in g,
+//! three rates in rad/s, a counter, a checksum, a number, three times in s since 1970, of which the first is filtered,
+//! Hz, G. These names contain blanks, so columns are identified by their positions. Texts that
+//! `logging_inertial_data.m` writes for the embedded module have a header of 32 dummies, m/s² and rad/s, and zeros for
+//! the rest: their samples are only numbered.
 //!
-//! What the module itself sends is read by [`crate::containers::MIMU`].
+//! The output of the module itself is read by [`crate::containers::MIMU`].
 
 use super::{Description, Format};
 use crate::table::Table;
 
-/// Places of the six axes in both.
+/// The columns of the six axes, in both formats.
 const SENSORS: [&str; 6] = ["2", "3", "4", "5", "6", "7"];
-/// Columns with a magnetometer's; …
+/// The number of columns, including those of a magnetometer.
 const COLUMNS: usize = 17;
-/// … and without.
+/// The number of columns without those of a magnetometer.
 const FEWEST_COLUMNS: usize = 14;
 
 pub(super) const OPENSHOE: Description = Description {
@@ -51,7 +52,7 @@ fn is_counted(table: &Table) -> bool {
     has_words(table, |words| words.iter().all(|&word| word == "dummy_header"))
 }
 
-/// Whether a table has as many columns as these, and words of a kind above them.
+/// Whether a table has a plausible number of columns, and words above them that `are_these` accepts.
 fn has_words(table: &Table, are_these: impl Fn(&[&str]) -> bool) -> bool {
     (FEWEST_COLUMNS..=COLUMNS).contains(&table.columns.len())
         && table.other_header.as_ref().is_some_and(|(_, words)| {

@@ -1,6 +1,6 @@
-//! Text of the 9DoF Razor and its descendants, as the walks of Aydın and Erken's paper were logged: blanks between time in
-//! ms, three accelerations in g and three rates in °/s; columns beyond the seventh are ignored. Without a header that names
-//! as many columns nothing but the shape shows it, so data that disagree have their way.
+//! Text of the 9DoF Razor and its descendants, as the walks of Aydın and Erken's paper were logged: time in ms, three
+//! accelerations in g and three rates in °/s, separated by blanks; columns beyond the seventh are ignored. Without a
+//! header that names as many columns the format is recognised by its shape alone, so the data may overrule it.
 
 use super::{Description, Format};
 use crate::dialect::Separator;

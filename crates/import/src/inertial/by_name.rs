@@ -1,4 +1,4 @@
-//! Columns found by their names.
+//! Finds columns by their names.
 
 use super::columns::{Axis, found, pick};
 use crate::error::{Error, quoted};
@@ -8,7 +8,7 @@ use crate::options::Columns as Picks;
 use crate::table::Table;
 use crate::unit::Quantity;
 
-/// The column of time: the plain name before others, known units before unknown ones.
+/// The time column: the plain name is preferred, then names with known units.
 pub(super) fn time_by_name(table: &Table, meanings: &[Option<Meaning>]) -> Result<usize, Error> {
     let is_time = |&place: &usize| {
         meanings[place].as_ref().is_some_and(|meaning| meaning.quantity == Quantity::Time)
@@ -16,7 +16,7 @@ pub(super) fn time_by_name(table: &Table, meanings: &[Option<Meaning>]) -> Resul
             && table.columns[place].values.iter().any(|value| value.is_finite())
     };
     let times: Vec<_> = (0..meanings.len()).filter(is_time).collect();
-    // The plain name first, then one whose unit is known, then in the order of the table of names.
+    // The plain name first, then names with a known unit, then the order of the table of names.
     let rank = |&place: &usize| {
         let alias = meanings[place].as_ref().map(|meaning| (meaning.unit.is_none(), meaning.alias));
         (table.columns[place].name != "t", alias)
@@ -42,7 +42,7 @@ fn two(table: &Table, name: &str) -> Error {
     Error::line(table.header.unwrap_or(1), format!("expected one column {name}, found two"))
 }
 
-/// The columns of accelerometer and gyroscope, each three that share a name.
+/// The columns of accelerometer and gyroscope, three each that share a name.
 pub(super) fn sensors_by_name(
     table: &Table,
     meanings: &[Option<Meaning>],
@@ -66,7 +66,7 @@ pub(super) fn sensors_by_name(
     Ok(sensors)
 }
 
-/// The three columns that share a name of the sensor, if there is one such name.
+/// The three columns that share a name of the sensor, if exactly one such name exists.
 fn sensor_by_name(
     table: &Table,
     meanings: &[Option<Meaning>],

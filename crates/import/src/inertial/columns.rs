@@ -1,4 +1,4 @@
-//! Which columns are time, accelerometer and gyroscope, and what is claimed of their units.
+//! Which columns are time, accelerometer and gyroscope, and which units are claimed for them.
 
 use super::by_name::{sensors_by_name, time_by_name};
 use super::conclusion::Source;
@@ -10,14 +10,14 @@ use crate::options::{Columns as Picks, Options, Pick, ROLES, TimeUnit};
 use crate::table::Table;
 use crate::unit::{Quantity, Unit};
 
-/// What is claimed of a unit.
+/// What is claimed about a unit.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Claim {
-    /// Somebody says so.
+    /// The unit is stated.
     Said(Unit, Source),
-    /// It is so unless the data disagree.
+    /// The unit is usual: it applies unless the data contradict it.
     Usual(Unit, Source),
-    /// Nothing is.
+    /// No unit is claimed.
     None,
 }
 
@@ -27,38 +27,38 @@ impl Claim {
     }
 }
 
-/// Where a value comes from: a column, as it is or turned round.
+/// The column that an axis is read from, possibly with its sign reversed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Axis {
     pub(crate) column: usize,
     pub(crate) is_negative: bool,
 }
 
-/// The columns of a log.
+/// The columns of an inertial log.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Columns {
-    /// None if the place of a sample in the log is its time.
+    /// The time column; `None` if samples are only numbered.
     pub(crate) time: Option<usize>,
-    /// Of the accelerometer, then of the gyroscope.
+    /// The axes of the accelerometer, then those of the gyroscope.
     pub(crate) sensors: [Axis; 6],
-    /// Of acceleration, rate and time.
+    /// The claims about the units of acceleration, rate and time.
     pub(crate) claims: [Claim; 3],
-    /// Whether options say which columns the sensors' are.
+    /// Whether options select the sensors' columns.
     pub(crate) axes_are_said: bool,
-    /// Whether options say any of the columns.
+    /// Whether options select any column.
     pub(crate) are_said: bool,
-    /// What told which columns they are.
+    /// How the columns were determined.
     pub(crate) source: Source,
 }
 
-/// The header of today's own logs, whose units are s, m/s² and rad/s.
+/// The header of this project's own logs, whose units are s, m/s² and rad/s.
 const PLAIN: [&str; 7] = ROLES;
 
 impl Columns {
     /// Finds the columns of a table.
     ///
     /// # Errors
-    /// Which column is missing, or which two claim to be the same, and what decides.
+    /// Which column is missing, or which two match the same role, and the option that decides.
     pub(crate) fn find(
         table: &Table,
         format: Option<Format>,
@@ -104,8 +104,9 @@ impl Columns {
     }
 }
 
-/// Whether a table has no names at all, and nobody says which column is which. Then the usual order is supposed: its units
-/// are left to the data, which show it wrong if it is.
+/// Whether a table has no names at all and no option says which column is which.
+///
+/// The usual order is then assumed, and the units are left to the data, which contradict it if it is wrong.
 fn is_bare(table: &Table, options: &Options) -> bool {
     let is_said = options.columns.picks.iter().any(Option::is_some);
     !table.has_names() && table.columns.len() >= ROLES.len() && options.format.is_none() && !is_said
@@ -156,7 +157,7 @@ fn claims(
     })
 }
 
-/// What a format says of a unit.
+/// The claim that a format makes about a unit.
 fn claim_of(known: &Description, quantity: Quantity, table: &Table, time: Option<usize>) -> Claim {
     let text = match quantity {
         Quantity::Acceleration => known.acceleration,
@@ -174,7 +175,7 @@ fn claim_of(known: &Description, quantity: Quantity, table: &Table, time: Option
     }
 }
 
-/// What the names say of a unit, if they all say the same.
+/// The claim that the column names make about a unit, if they agree.
 fn claim_of_header(
     table: &Table,
     columns: &Columns,
@@ -191,7 +192,7 @@ fn claim_of_header(
             if is_number { of(time) } else { Some(Unit::new(1e-6, "dates or times of day")) }
         }),
     };
-    // A unit stands at the first axis alone, or at each.
+    // The unit may stand at the first axis alone, or at each axis.
     let others = match quantity {
         Quantity::Acceleration => &columns.sensors[1..3],
         Quantity::Rate => &columns.sensors[4..6],
@@ -202,7 +203,7 @@ fn claim_of_header(
     unit.filter(|_| !disagrees).map_or(Claim::None, |unit| Claim::Said(unit, Source::Header))
 }
 
-/// The column that an option picks, if one does.
+/// The column that an option selects, if one does.
 pub(super) fn pick(table: &Table, picks: &Picks, role: usize) -> Result<Option<Axis>, Error> {
     let Some(Pick { name, is_negative }) = &picks.picks[role] else { return Ok(None) };
     let bare = |column: &str| names::split_unit(column).0.to_lowercase();
@@ -231,7 +232,7 @@ pub(super) fn pick(table: &Table, picks: &Picks, role: usize) -> Result<Option<A
     Ok(Some(Axis { column, is_negative: *is_negative }))
 }
 
-/// The names of a table's columns, for a complaint.
+/// The names of a table's columns, for an error message.
 pub(super) fn found(table: &Table) -> String {
     const MOST: usize = 12;
     let names: Vec<_> = table.columns.iter().map(|column| column.name.as_str()).collect();
@@ -261,7 +262,7 @@ fn sensors_of_format(
 }
 
 fn column_of_format(table: &Table, known: &Description, name: &str) -> Result<usize, Error> {
-    // A format without names tells places.
+    // A format without names gives column numbers.
     let place = name.parse::<usize>().ok().map(|number| number - 1);
     let place = place.or_else(|| table.columns.iter().position(|column| column.name == name));
     place.filter(|&place| place < table.columns.len()).ok_or_else(|| {

@@ -1,10 +1,10 @@
-//! What was concluded about a log, and from what.
+//! Conclusions about a log, and the evidence for them.
 
 use std::fmt;
 
 use crate::formats::Format;
 
-/// What a conclusion comes from.
+/// The evidence for a conclusion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Source {
@@ -14,7 +14,7 @@ pub enum Source {
     Data,
     /// An option.
     Option,
-    /// What is known of the log's format.
+    /// The definition of the log's format.
     Format(Format),
 }
 
@@ -29,12 +29,12 @@ impl fmt::Display for Source {
     }
 }
 
-/// Something that was concluded about a log; displayed in one line such as `time in ms, acceleration in g: header`.
+/// A conclusion about a log; displayed as one line such as `time in ms, acceleration in g: header`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Conclusion {
     /// What was concluded.
     pub what: String,
-    /// What it comes from.
+    /// The evidence for it.
     pub from: Source,
 }
 
@@ -44,7 +44,7 @@ impl fmt::Display for Conclusion {
     }
 }
 
-/// Puts what comes from the same into one line.
+/// Joins conclusions from the same source into one line.
 pub(crate) fn conclusions(parts: impl IntoIterator<Item = (String, Source)>) -> Vec<Conclusion> {
     let mut conclusions: Vec<Conclusion> = Vec::new();
     for (what, from) in parts {

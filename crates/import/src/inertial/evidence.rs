@@ -1,4 +1,4 @@
-//! What the turns between moments of rest say about units and axes.
+//! What the rotations between moments of rest tell about units and axes.
 
 use super::columns::Claim;
 use super::conclusion::Source;
@@ -9,28 +9,31 @@ use super::units::{Candidates, OPTIONS, rates};
 use crate::error::Error;
 use crate::unit::Unit;
 
-/// The scale that wins leaves no more than this in disagreement, …
+/// The largest disagreement at which a scale may win.
 const AGREEMENT: f64 = 0.15;
-/// … and every other one leaves so many times as much, …
+/// The ratio by which the disagreement of every other scale must exceed the winner's.
 const CLEAR: f64 = 2.0;
-/// … three times as much if it is the one that was said or is usual.
+/// The ratio by which the disagreement of the stated or usual scale must exceed the winner's for that scale to be
+/// overruled.
 const AGAINST: f64 = 3.0;
-/// Fewer stretches of motion tell nothing.
+/// The smallest number of stretches of motion from which anything is concluded.
 const FEWEST_STRETCHES: usize = 2;
-/// Half and double of the winning scale leave so many times as much: the truth does not lie between two units.
+/// The ratio by which the disagreement at half and at twice the winning scale must exceed the winner's, so that the
+/// truth does not lie between two units.
 const VALLEY: f64 = 1.5;
-/// Other axes must explain the motion so many times as well to accuse those of the log, …
+/// The factor by which other axes must explain the motion better before those of the log are refused.
 const OTHER_AXES: f64 = 1.8;
-/// … in so many stretches; in fewer, so many times.
+/// The number of stretches from which `OTHER_AXES` applies; with fewer, the second, larger factor does.
 const ENOUGH_FOR_AXES: usize = 5;
 const OTHER_AXES_OF_FEW: f64 = 3.0;
-/// So much disagreement is no recording of one sensor in these units.
+/// The disagreement from which a log cannot be a recording of one sensor in these units; the second value applies to
+/// few stretches.
 const HOPELESS: f64 = 0.4;
 const HOPELESS_OF_FEW: f64 = 0.7;
-/// So little disagreement accuses no axes.
+/// The disagreement up to which the axes are accepted without trying others.
 const SURE: f64 = 0.02;
 
-/// What the motion says.
+/// The evidence that rest and motion give.
 pub(super) struct Evidence {
     pub(super) rest: Option<Rest>,
     motion: Option<Motion>,
@@ -40,7 +43,7 @@ type Told = (Unit, Source);
 
 impl Evidence {
     pub(super) fn find(raw: &[Raw], usual: f64, times: &Candidates) -> Self {
-        // With the first unit that shows rest: it only says how long windows are.
+        // The first unit in which rest is found is used: it only determines the length of the windows.
         let mut steps =
             times.units.iter().map(|unit| usual * unit.scale).filter(|step| step.is_finite());
         let found = steps.find_map(|step| Some((Rest::find(raw, step)?, step)));
@@ -49,7 +52,7 @@ impl Evidence {
         Self { rest: found.map(|(rest, _)| rest), motion }
     }
 
-    /// The units of rate and time, by how the turns carry gravity along.
+    /// The units of rate and time that carry gravity along best.
     pub(super) fn turns(
         &self,
         rates: &[Unit],
@@ -94,7 +97,7 @@ impl Evidence {
         }
     }
 
-    /// The pair of units that explains the motion, and far better than every other.
+    /// The pair of units that explains the motion far better than every other.
     fn winner(&self, rates: &[Unit], times: &[Unit]) -> Option<(usize, usize)> {
         let motion = self.motion.as_ref().filter(|motion| motion.count() >= FEWEST_STRETCHES)?;
         let error = |scale: f64| motion.error(scale, Axes::SAME);
@@ -104,7 +107,7 @@ impl Evidence {
         let errors: Vec<_> = pairs.map(|pair| (pair, error(scale(pair)))).collect();
         let &(best, least) = errors.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
         let is_clear = errors.iter().all(|&(pair, error)| pair == best || error >= CLEAR * least);
-        // Half and double are no unit's, but the truth may lie there.
+        // No unit lies at half or twice the scale, but the truth may.
         let is_valley =
             [0.5, 2.0].iter().all(|factor| error(factor * scale(best)) >= VALLEY * least);
         (least <= AGREEMENT && is_clear && is_valley).then_some(best)
@@ -124,7 +127,7 @@ impl Evidence {
         })
     }
 
-    /// Refuses units that are said if another one of the gyroscope explains the motion far better.
+    /// Refuses a stated unit if another unit of the gyroscope explains the motion far better.
     fn contradiction(&self, said: &Unit, source: Source, times: &Candidates) -> Result<(), Error> {
         if source == Source::Option || times.source == Source::Option {
             return Ok(());
@@ -145,7 +148,7 @@ impl Evidence {
         }
     }
 
-    /// Refuses axes of the gyroscope that are swapped or turned round against the accelerometer's.
+    /// Refuses axes of the gyroscope that are swapped or reversed against the accelerometer's.
     pub(super) fn axes(&self, scale: f64) -> Result<(), Error> {
         let Some(motion) = &self.motion else { return Ok(()) };
         let count = motion.count();

@@ -1,4 +1,4 @@
-//! What was found out about a log, for the conclusions.
+//! The findings about a log, as conclusions.
 
 use super::columns::{Axis, Columns};
 use super::conclusion::{Conclusion, Source, conclusions};
@@ -8,19 +8,19 @@ use crate::options::ROLES;
 use crate::table::Table;
 use crate::{Dialect, Separator};
 
-/// What was found out about a log.
+/// The findings about a log.
 pub(super) struct Found<'a> {
     pub(super) table: &'a Table,
     pub(super) columns: &'a Columns,
     pub(super) units: &'a Units,
-    /// How many samples stand there twice.
+    /// The number of samples that repeat the one before.
     pub(super) doubles: usize,
-    /// What was taken from the times, s.
+    /// The offset that was subtracted from the times, s.
     pub(super) start: f64,
 }
 
 impl Found<'_> {
-    /// What was concluded, with the notes of the format's reader.
+    /// The conclusions, including the notes of the format's reader.
     pub(super) fn conclusions(&self, format: Option<Format>, notes: &[String]) -> Vec<Conclusion> {
         let Units { units: [force, rate, time], sources } = self.units;
         let mut parts = vec![
@@ -45,7 +45,7 @@ impl Found<'_> {
         conclusions
     }
 
-    /// The columns that were taken, unless they are the plain ones, or a decoder's own.
+    /// The columns that were used, unless they are the plain ones or a decoder's own.
     fn names(&self) -> Option<String> {
         let name = |axis: &Axis| {
             let sign = if axis.is_negative { "−" } else { "" };

@@ -15,23 +15,24 @@
 use super::raw::Raw;
 use super::rest::{Rest, Window, length_of};
 
-/// The longest stretch between two moments of rest, s: a bias of 1 °/s turns it by 10°.
+/// The longest stretch between two moments of rest, s: over it a bias of 1 °/s turns by 10°.
 const LONGEST: f64 = 10.0;
-/// A short stretch, s: a stride. Short ones are preferred, if there are enough.
+/// The longest short stretch, s: a stride. If there are at least `ENOUGH` short stretches, only these are used.
 const SHORT: f64 = 2.5;
 const ENOUGH: usize = 5;
-/// Stretches that turn less than this share of what the liveliest do tell little.
+/// Stretches that turn by less than this share of the liveliest ones tell little and are left out.
 const LIVELY: f64 = 0.4;
-/// Directions so far apart are two moments although there is rest between them, rad; so near they are one.
+/// Directions of gravity farther apart than `APART` belong to two moments even if there is only rest between them, rad;
+/// directions closer than `SAME` belong to one moment.
 const APART: f64 = 0.3;
 const SAME: f64 = 0.03;
-/// Most stretches and samples that are looked at, spread over the whole log.
+/// The largest numbers of stretches and of samples that are used, spread over the whole log.
 const MOST_STRETCHES: usize = 48;
 const MOST_SAMPLES: usize = 8_000;
-/// A gap of so many usual steps is no motion that the gyroscope saw.
+/// A gap longer than this many usual steps excludes a stretch: the gyroscope did not see all of its motion.
 const GAP: f64 = 8.0;
 
-/// The axes of the gyroscope that are taken for the accelerometer's x, y and z, and their signs.
+/// The axes of the gyroscope that are taken as the accelerometer's x, y and z, with their signs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Axes {
     pub(crate) from: [usize; 3],
@@ -39,10 +40,10 @@ pub(crate) struct Axes {
 }
 
 impl Axes {
-    /// As they are.
+    /// The axes as they are.
     pub(crate) const SAME: Self = Self { from: [0, 1, 2], signs: [1.0; 3] };
 
-    /// All 48 ways to swap and mirror axes.
+    /// All 48 ways to swap and mirror the axes.
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         const ORDERS: [[usize; 3]; 6] =
             [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
@@ -63,24 +64,24 @@ impl Axes {
 #[derive(Debug, Clone)]
 pub(crate) struct Motion {
     stretches: Vec<Stretch>,
-    /// Biases that are tried: the gyroscope's mean in the moments of rest, and zero. A foot that never stands turns in those
-    /// moments, and their mean is motion.
+    /// The biases that are tried: the gyroscope's mean during rest, and zero. A foot that never stands still turns even
+    /// in those moments, so that their mean is motion.
     biases: [[f64; 3]; 2],
 }
 
 #[derive(Debug, Clone)]
 struct Stretch {
-    /// Time in the log's own unit since the sample before, the mean rate since then, the specific force as a multiple of its
-    /// norm at rest.
+    /// For each step: the time since the sample before, in the log's own unit, the mean rate over it, and the specific
+    /// force as a multiple of its norm at rest.
     steps: Vec<(f64, [f64; 3], [f64; 3])>,
     first: [f64; 3],
     last: [f64; 3],
-    /// The integral of the norm of the rate without its bias.
+    /// The integral of the norm of the bias-free rate.
     turned: f64,
 }
 
 impl Motion {
-    /// The stretches of a log whose usual spacing is `usual` in its own unit, `step` in seconds.
+    /// The stretches of a log whose usual spacing is `usual` in its own unit and `step` in seconds.
     pub(crate) fn find(raw: &[Raw], rest: &Rest, usual: f64, step: f64) -> Self {
         let mut stretches = Vec::new();
         for (a, b) in ends(&rest.windows, (LONGEST / step) as usize) {
@@ -110,13 +111,15 @@ impl Motion {
         Self { stretches, biases: [rest.bias, [0.0; 3]] }
     }
 
-    /// How many stretches there are.
+    /// The number of stretches.
     pub(crate) fn count(&self) -> usize {
         self.stretches.len()
     }
 
-    /// How much is in disagreement if the product of the units of rate and time is `scale`: 0 is perfect, 0.1 are 6° or a
-    /// tenth of gravity. It is the mean over the better half of the stretches: in the other there may be slips and impacts.
+    /// The disagreement if the product of the units of rate and time is `scale`.
+    ///
+    /// 0 is perfect; 0.1 is 6° or a tenth of gravity. It is the mean over the better half of the stretches, because the
+    /// other half may contain slips and impacts.
     pub(crate) fn error(&self, scale: f64, axes: Axes) -> f64 {
         let [rest, none] = self.biases.map(|bias| self.error_with(bias, scale, axes));
         rest.min(none)
@@ -145,7 +148,7 @@ fn ends(windows: &[Window], longest: usize) -> Vec<(Window, Window)> {
         match start {
             Some(start) if window.middle - start.middle > longest => {}
             Some(start) if has_moved || turned > APART => ends.push((start, *window)),
-            // A slow turn goes on; a rest begins its stretch at its end.
+            // A slow turn goes on; after a rest the stretch begins at the end of the rest.
             Some(_) if turned > SAME => continue,
             _ => {}
         }
@@ -154,7 +157,7 @@ fn ends(windows: &[Window], longest: usize) -> Vec<(Window, Window)> {
     ends
 }
 
-/// What nine of ten are below.
+/// The 90th percentile.
 fn high(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<_> = values.collect();
     values.sort_by(f64::total_cmp);
@@ -179,7 +182,7 @@ impl Stretch {
     }
 
     fn error(&self, bias: [f64; 3], scale: f64, axes: Axes) -> f64 {
-        // The columns of the turn from the body at the end to the body at the start.
+        // The columns of the rotation from the body at the end to the body at the start.
         let mut turn = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let (mut sum, mut duration) = ([0.0; 3], 0.0);
         for &(time, rate, force) in &self.steps {
@@ -202,7 +205,7 @@ impl Stretch {
     }
 }
 
-/// The columns of the turn by a vector.
+/// The columns of the rotation by a rotation vector.
 fn turn_of([x, y, z]: [f64; 3]) -> [[f64; 3]; 3] {
     let angle = length_of([x, y, z]);
     let (sine, cosine) = angle.sin_cos();

@@ -1,19 +1,21 @@
-//! The order of time: what stands out of it is left out, clocks that begin anew at midnight or at the end of their
-//! counter go on, and a recording that begins anew is refused.
+//! Puts samples into the order of time. Those out of order are left out, clocks that wrap at midnight or at the end of
+//! their counter are continued, and a recording that restarts is refused.
 
 use super::raw::Raw;
 use crate::damage::{Damage, Fault};
 use crate::error::{Complaint, Error};
 use crate::part::Part;
 
-/// Doubled lines up to so many are an accident; more are the logger's habit, and stay.
+/// The largest number of doubled lines that are taken for an accident and dropped; more are the logger's habit, and
+/// kept.
 const ACCIDENTS: usize = 3;
-/// So many lines in a row before the time that was reached, at the end of a log, are a recording that begins anew.
+/// The number of consecutive lines at the end of a log, all earlier than the latest time, that are taken for a
+/// restarted recording.
 const RESTART: usize = 4;
-/// How near to its ends a clock must be where it begins anew, as a share of what it counts.
+/// How near to its ends a clock must be where it wraps, as a share of its period.
 const NEAR: f64 = 1e-3;
 
-/// Samples with their lines and the places of their rows.
+/// Samples with their lines and the indices of their rows.
 #[derive(Debug, Default)]
 pub(crate) struct Rows {
     pub(crate) raw: Vec<Raw>,
@@ -28,7 +30,7 @@ impl Rows {
         self.places[to] = self.places[from];
     }
 
-    /// Leaves out samples at ascending places.
+    /// Drops the samples at these indices, which must ascend.
     pub(crate) fn remove(&mut self, left_out: &[usize]) {
         let Some(&first) = left_out.first() else { return };
         let (mut kept, mut left_out) = (first, left_out.iter().peekable());
@@ -47,10 +49,10 @@ impl Rows {
         self.places.truncate(length);
     }
 
-    /// Leaves only samples whose times ascend or repeat. A clock that counts to one of `periods` goes on.
+    /// Keeps only samples whose times ascend or repeat. A clock that wraps at one of `periods` is continued.
     ///
     /// # Errors
-    /// [`Error::Line`] or [`Error::Part`] where a recording begins anew.
+    /// [`Error::Line`] or [`Error::Part`] where a recording restarts.
     pub(crate) fn put_in_order(
         &mut self,
         periods: &[f64],
@@ -91,8 +93,8 @@ impl Rows {
         Ok(())
     }
 
-    /// Whether the last kept sample is out of order, and not sample `i` that is before it: the one before it and the one
-    /// after `i` say so.
+    /// Whether the last kept sample is out of order rather than the earlier sample `i`: its predecessor and the
+    /// successor of `i` decide.
     fn is_late(&self, kept: usize, i: usize, passed: f64) -> bool {
         let (last, time) = (self.raw[kept - 1].time, self.raw[i].time + passed);
         let next = self.raw.get(i + 1).map(|next| next.time + passed);
@@ -108,7 +110,7 @@ impl Rows {
         });
     }
 
-    /// Leaves out samples that are the same as the one before, if they are few; how many stay.
+    /// Drops samples that repeat the one before, if they are few; returns the number of repeated samples that stay.
     pub(crate) fn without_doubles(&mut self, damage: &mut Damage) -> usize {
         let is_double = |i: usize, raw: &[Raw]| i > 0 && raw[i] == raw[i - 1];
         let doubles = (0..self.raw.len()).filter(|&i| is_double(i, &self.raw)).count();
@@ -131,7 +133,7 @@ impl Rows {
     }
 }
 
-/// What a clock counts to that went from `last` to `time`.
+/// The period of a clock that wrapped between `last` and `time`.
 fn period(periods: &[f64], last: f64, time: f64) -> Option<f64> {
     periods.iter().copied().find(|period| {
         (0.0..=period * NEAR).contains(&time) && (0.0..=period * NEAR).contains(&(period - last))

@@ -1,17 +1,17 @@
-//! Samples that share a time: a radio's packets, or a clock that is too coarse.
+//! Samples that share a time: packets of a radio, or a clock that is too coarse.
 
 use super::raw::Raw;
 use crate::error::Error;
 
-/// Fewer samples tell nothing.
+/// The smallest number of samples from which anything is concluded.
 const FEWEST: usize = 100;
-/// So many samples at a time, on average, are no accident and no doubled rows.
+/// The mean number of samples per time from which shared times are neither an accident nor doubled rows.
 const SHARED: usize = 4;
 
-/// Refuses samples of which it is not known when each was measured.
+/// Refuses samples that share times, because the time of each is unknown.
 ///
 /// # Errors
-/// [`Error::Undecided`] if four and more have one time, on average.
+/// [`Error::Undecided`] if four or more samples have the same time, on average.
 pub(super) fn refuse_shared_times(raw: &[Raw]) -> Result<(), Error> {
     let times = 1 + raw.windows(2).filter(|pair| pair[0].time != pair[1].time).count();
     if raw.len() < FEWEST || raw.len() < SHARED * times {

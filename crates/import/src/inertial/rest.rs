@@ -1,61 +1,61 @@
-//! Moments of rest, found without knowing any unit: a short window in which the accelerometer changes little beside what it
-//! shows.
+//! Moments of rest, found without knowing any unit: short windows in which the accelerometer changes little relative to
+//! its mean.
 
 use super::raw::Raw;
 
-/// How long a window is, s: shorter than a footprint, longer than a few samples.
+/// The length of a window, s: shorter than a stance, longer than a few samples.
 const WINDOW: f64 = 0.08;
-/// Fewest and most samples of a window.
+/// The smallest and the largest number of samples in a window.
 const SAMPLES: (f64, f64) = (5.0, 800.0);
-/// The share of the windows that are the stillest, from which the norm at rest comes.
+/// The share of the windows, the stillest ones, from which the norm at rest is computed.
 const STILLEST: f64 = 0.04;
-/// The share of the windows that are taken for still, if they change little enough: a foot stands longer.
+/// The share of the windows that count as still if they change little enough: a foot stands for longer.
 const OFTEN: f64 = 0.15;
-/// Beyond this share of change the stillest windows are no rest.
+/// The relative change above which even the stillest windows are not rest.
 const MOST_CHANGE: f64 = 0.08;
-/// A window is still if it changes at most so many times as much as the stillest do, …
+/// A window is still if it changes by at most this multiple of what the stillest windows do.
 const AS_STILL: f64 = 2.5;
-/// … or this share of the norm, …
+/// A window is still if it changes by at most this share of the norm.
 const STILL: f64 = 0.02;
-/// … and if its norm is within this share of the norm at rest.
+/// The largest deviation of a still window's norm from the norm at rest, as a share of the latter.
 const NORM: f64 = 0.06;
-/// Fewer windows tell nothing.
+/// The smallest number of windows from which anything is concluded.
 const FEWEST_WINDOWS: usize = 5;
 
 /// A window of samples.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Window {
-    /// Its middle: the place of a sample.
+    /// The index of its middle sample.
     pub(crate) middle: usize,
-    /// Mean of the accelerometer.
+    /// The mean of the accelerometer.
     pub(crate) force: [f64; 3],
-    /// Mean of the gyroscope.
+    /// The mean of the gyroscope.
     pub(crate) rate: [f64; 3],
-    /// Standard deviation of the accelerometer as a share of the mean's norm.
+    /// The standard deviation of the accelerometer, as a share of the norm of its mean.
     pub(crate) change: f64,
     /// Whether it is a moment of rest.
     pub(crate) is_still: bool,
 }
 
-/// What a log holds of rest.
+/// The moments of rest in a log.
 #[derive(Debug, Clone)]
 pub(crate) struct Rest {
-    /// All windows, in the order of time.
+    /// All windows, in order of time.
     pub(crate) windows: Vec<Window>,
-    /// The accelerometer's norm, in its own unit.
+    /// The accelerometer's norm at rest, in its own unit.
     pub(crate) norm: f64,
-    /// The gyroscope's mean, in its own unit: its bias.
+    /// The gyroscope's mean at rest, in its own unit: its bias.
     pub(crate) bias: [f64; 3],
 }
 
 impl Rest {
-    /// Looks for rest in samples whose median spacing is `step` seconds; none if there is not any.
+    /// Finds rest in samples whose median spacing is `step` seconds; `None` if there is none.
     pub(crate) fn find(raw: &[Raw], step: f64) -> Option<Self> {
         Self::within(raw, step, NORM, leave_out_repeated)
     }
 
-    /// The same of a sensor that is put down on purpose: its norm is within another share of that at rest, and a log of few
-    /// digits shows the same again and again.
+    /// Finds the rest of a sensor that is put down on purpose: its norm may deviate by `share` from that at rest, and
+    /// repeated values are accepted, because a log with few digits repeats itself.
     pub(crate) fn put_down(raw: &[Raw], step: f64, share: f64) -> Option<Self> {
         Self::within(raw, step, share, |_| ())
     }
@@ -85,7 +85,7 @@ impl Rest {
         let bias = std::array::from_fn(|axis| {
             median(stillest.iter().map(|&i| windows[i].rate[axis]).collect())
         });
-        // A log that begins with a long stand has other rest, too.
+        // A log that begins with a long stand also contains other rest.
         let often = least(&windows, OFTEN).last().map_or(limit, |&i| windows[i].change);
         let limit = (limit * AS_STILL).max(STILL).max(often).min(MOST_CHANGE);
         for window in &mut windows {
@@ -96,9 +96,10 @@ impl Rest {
     }
 }
 
-/// A sensor that repeats itself to the last digit where it has noise elsewhere is stuck, not at rest.
+/// Excludes windows without any noise if others have some: a sensor that repeats itself to the last digit is stuck, not
+/// at rest.
 fn leave_out_repeated(windows: &mut [Window]) {
-    // Beyond the rounding of a mean.
+    // More than the rounding error of a mean.
     const NOTHING: f64 = 1e-12;
     let noisy = windows.iter().filter(|window| window.change > NOTHING).count();
     if 2 * noisy < windows.len() {
@@ -129,7 +130,7 @@ fn window(start: usize, part: &[Raw]) -> Window {
     Window { middle: start + part.len() / 2, force, rate, change, is_still: false }
 }
 
-/// The places of a share of the windows, those that change least; the least still of them last.
+/// The indices of a share of the windows, those that change least; the least still of them is last.
 fn least(windows: &[Window], share: f64) -> Vec<usize> {
     let count = ((windows.len() as f64 * share) as usize).max(FEWEST_WINDOWS.min(windows.len()));
     let mut places: Vec<_> = (0..windows.len()).collect();
@@ -143,7 +144,7 @@ pub(crate) fn length_of(vector: [f64; 3]) -> f64 {
     vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// The middle one; not a number of none.
+/// The median; NaN if there are no values.
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     if values.is_empty() {
         return f64::NAN;

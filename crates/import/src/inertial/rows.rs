@@ -1,4 +1,4 @@
-//! Rows of a table as samples in the log's own units.
+//! Converts the rows of a table to samples in the log's own units.
 
 use super::columns::{Axis, Columns};
 use super::order::Rows;
@@ -9,7 +9,7 @@ use crate::table::Table;
 use crate::text::{Text, letters};
 
 impl Rows {
-    /// The rows that hold a number in every column that is needed.
+    /// The rows that hold a number in every required column.
     pub(super) fn of(
         text: Option<&Text<'_>>,
         table: &Table,
@@ -50,7 +50,7 @@ impl Rows {
     }
 }
 
-/// What is wrong with a row that has no number in a column that is needed.
+/// Describes what is wrong with a row that lacks a number in a required column.
 fn complaint(text: Option<&Text<'_>>, table: &Table, columns: &Columns, row: usize) -> String {
     let needed = columns.time.into_iter().chain(columns.sensors.map(|axis| axis.column));
     let value = |column: usize| table.columns[column].values.get(row).copied();

@@ -1,4 +1,4 @@
-//! Stretches in which a sensor is held still in one attitude: for a calibration, which wants long ones.
+//! Stretches in which a sensor is held still in one attitude: a calibration needs long ones.
 
 use super::Sample;
 use super::motion::angle;
@@ -6,25 +6,28 @@ use super::raw::Raw;
 use super::rest::{Rest, Window, length_of};
 use super::turns::{raw_of, usual_step};
 
-/// Between two windows of one stand, and within it, gravity turns by no more, rad: a hand that creeps does, and the sensor's
-/// noise in a window does not.
+/// The largest angle by which gravity turns between two windows of one stand, and within it, rad: a creeping hand
+/// exceeds it, the sensor's noise in a window does not.
 const SAME: f64 = 0.02;
-/// Nor is the mean rate farther from that at rest, rad/s: of a turn about the vertical the force shows nothing.
+/// The largest deviation of a still window's mean rate from that at rest, rad/s: the force does not show a turn about
+/// the vertical.
 const STILL_RATE: f64 = 0.05;
-/// An accelerometer that is off by a quarter shows gravity so differently on its sides.
+/// The deviation of the norm that is allowed for an uncalibrated accelerometer: one that is off by a quarter measures
+/// gravity so differently on its sides.
 const NORM: f64 = 0.25;
 
 /// A stretch of samples in which a sensor is held still.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stand {
-    /// Its samples, without those at either end, in which a hand lets go and grips again.
+    /// The indices of its samples, without those at either end, where a hand lets go and grips again.
     pub samples: std::ops::Range<usize>,
-    /// How long that is, s.
+    /// The duration of these samples, s.
     pub seconds: f64,
 }
 
-/// The stretches of at least so many seconds in which a sensor is held still in one attitude, in the order of time. A short
-/// window is cut from either end of each.
+/// The stretches of at least `shortest` seconds in which a sensor is held still in one attitude, in order of time.
+///
+/// One short window is cut from either end of each.
 pub fn stands(samples: &[Sample], shortest: f64) -> Vec<Stand> {
     let raw = raw_of(samples);
     let Some(usual) = usual_step(&raw) else { return Vec::new() };
@@ -61,7 +64,7 @@ fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
 fn stand(raw: &[Raw], windows: &[Window], shortest: f64) -> Option<Stand> {
     let [_, inner @ .., _] = windows else { return None };
     let (first, last) = (inner.first()?, inner.last()?);
-    // A window reaches as far to either side of its middle.
+    // A window extends equally far to either side of its middle.
     let half = last.middle.checked_sub(first.middle)? / (inner.len().max(2) - 1) / 2;
     let samples = first.middle.saturating_sub(half)..(last.middle + half).min(raw.len());
     let (begin, end) = (raw.get(samples.start)?, raw.get(samples.end.checked_sub(1)?)?);
@@ -73,7 +76,7 @@ fn stand(raw: &[Raw], windows: &[Window], shortest: f64) -> Option<Stand> {
 mod tests {
     use super::*;
 
-    /// Held for 2 s, turned about x for 1 s, and so on, at 100 Hz, with a little noise.
+    /// Samples at 100 Hz, with a little noise, of a sensor that is held for 2 s, turned about x for 1 s, and so on.
     fn held(turns: u32) -> Vec<Sample> {
         let sample = |i: u32| {
             let t = f64::from(i) / 100.0;

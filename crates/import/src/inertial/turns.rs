@@ -1,32 +1,33 @@
-//! Whether the turns that a gyroscope measured are as large as gravity shows them.
+//! Compares the rotation that a gyroscope measured with what the direction of gravity shows.
 
 use super::Sample;
 use super::motion::{Axes, Motion};
 use super::raw::Raw;
 use super::rest::{Rest, median};
 
-/// Fewer stretches of motion tell nothing.
+/// The smallest number of stretches of motion from which anything is concluded.
 const FEWEST_STRETCHES: usize = 2;
-/// How far the search goes either way, as a factor.
+/// The range of the search in either direction, as a factor.
 const FARTHEST: f64 = 4.0;
-/// Steps of the search from the smallest to the largest factor.
+/// The number of steps from the smallest to the largest factor.
 const STEPS: i32 = 48;
 
-/// How large the measured turns are, against those that the directions of gravity show.
+/// The size of the measured rotations, relative to those that the directions of gravity show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turns {
-    /// By what the measured turns have to be multiplied to explain the directions of gravity best.
+    /// The factor on the measured rotations that explains the directions of gravity best.
     pub factor: f64,
-    /// What then is left in disagreement: 0.1 are 6° or a tenth of gravity.
+    /// The disagreement that remains with this factor: 0.1 is 6° or a tenth of gravity.
     pub error: f64,
-    /// What is left with the turns as measured.
+    /// The disagreement of the rotations as measured.
     pub error_as_measured: f64,
-    /// How many stretches of motion between moments of rest there were.
+    /// The number of stretches of motion between moments of rest.
     pub stretches: usize,
 }
 
-/// Compares turns and gravity between moments of rest. A factor far from one means a gyroscope of another scale, or times
-/// that run too fast or too slow. None if there is too little rest or motion.
+/// Compares rotations and gravity between moments of rest; `None` if there is too little rest or motion.
+///
+/// A factor far from one means that the gyroscope's scale is wrong, or that times run too fast or too slow.
 pub fn turns(samples: &[Sample]) -> Option<Turns> {
     let raw = raw_of(samples);
     let usual = usual_step(&raw)?;
@@ -41,7 +42,7 @@ pub fn turns(samples: &[Sample]) -> Option<Turns> {
     Some(Turns { factor: best.0, error: best.1, error_as_measured: error(1.0), stretches })
 }
 
-/// The samples, with times in s.
+/// The samples as raw ones, with times in s.
 pub(super) fn raw_of(samples: &[Sample]) -> Vec<Raw> {
     let raw = |sample: &Sample| Raw {
         time: sample.time_us as f64 * 1e-6,
@@ -51,7 +52,7 @@ pub(super) fn raw_of(samples: &[Sample]) -> Vec<Raw> {
     samples.iter().map(raw).collect()
 }
 
-/// The median spacing of samples; none of less than two moments.
+/// The median spacing of the samples; `None` if there are fewer than two different times.
 pub(super) fn usual_step(raw: &[Raw]) -> Option<f64> {
     let steps = raw.windows(2).map(|pair| pair[1].time - pair[0].time);
     let usual = median(steps.filter(|step| *step > 0.0).collect());

@@ -1,4 +1,4 @@
-//! Which units a log is in: what is claimed, if the data agree; what the data say, if nothing is claimed.
+//! Decides the units of a log: what is claimed, if the data agree; what the data show, if nothing is claimed.
 
 use super::columns::Claim;
 use super::conclusion::Source;
@@ -8,36 +8,38 @@ use super::rest::{Rest, length_of, median};
 use crate::error::Error;
 use crate::unit::{Quantity, STANDARD_GRAVITY, Unit, counts};
 
-/// Fewer samples are no evidence against what is usual.
+/// The smallest number of samples that count as evidence against a usual unit.
 const FEWEST: usize = 20;
-/// Rates of inertial sensors, Hz; a clock's unit that gives another one is not taken for what is not said.
+/// Plausible rates of inertial sensors, Hz; without a stated unit only units of the clock that yield such a rate are
+/// considered.
 const RATES: (f64, f64) = (9.9, 10_100.0);
-/// Rates that no unit which is said or usual may give, Hz.
+/// The rates that even a stated or usual unit must yield, Hz.
 const ABSURD_RATES: (f64, f64) = (1.1, 20_000.0);
-/// How far the norm at rest may be from a unit's: sensors are off by some percent, the units by a factor of two.
+/// The largest relative deviation of the norm at rest from a unit's gravity: sensors are off by some percent, units by
+/// a factor of two.
 const NORM: f64 = 0.15;
-/// So far it contradicts what is said.
+/// The factor by which the norm at rest must differ from gravity to contradict a stated or usual unit.
 const WRONG_NORM: f64 = 1.5;
-/// A log without gravity has so much of it at most.
+/// The largest norm, as a share of gravity, of a log from which gravity was removed.
 const NO_GRAVITY: f64 = 0.3;
-/// Which option decides.
+/// The option that decides each unit: of acceleration, rate and time.
 pub(super) const OPTIONS: [&str; 3] = [
     "--units acc=m/s2 (g, mg, 16384lsb, …)",
     "--units gyro=rad/s (deg/s, 131lsb, …)",
     "--units t=s (ms, us, ns)",
 ];
 
-/// The units of acceleration, rate and time, and what told them.
+/// The units of acceleration, rate and time, and the evidence for each.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Units {
     pub(crate) units: [Unit; 3],
     pub(crate) sources: [Source; 3],
 }
 
-/// Decides the units of samples in order.
+/// Decides the units of samples that are in order.
 ///
 /// # Errors
-/// [`Error::Undecided`] where the data do not tell what nobody says, or contradict what is said.
+/// [`Error::Undecided`] where the data do not settle an unstated unit, or contradict a stated one.
 pub(crate) fn decide(
     raw: &[Raw],
     claims: &[Claim; 3],
@@ -66,11 +68,11 @@ pub(crate) fn decide(
     })
 }
 
-/// Units that a quantity may have, the likeliest first, and what tells that one.
+/// The units that a quantity may have, the likeliest first, and the evidence for that one.
 pub(super) struct Candidates {
     pub(super) units: Vec<Unit>,
     pub(super) source: Source,
-    /// Whether the first one is said or usual, and not contradicted yet.
+    /// Whether the first one is stated or usual, and not contradicted yet.
     pub(super) is_claimed: bool,
 }
 
@@ -104,7 +106,7 @@ fn times(claim: &Claim, usual: f64, samples: usize) -> Result<Candidates, Error>
             let units: Vec<_> =
                 is_claimed.then(|| unit.clone()).into_iter().chain(others).collect();
             let source = if is_claimed { *source } else { Source::Data };
-            // Nothing fits better: it stays.
+            // No other unit fits better, so the usual one stays.
             if units.is_empty() {
                 return Ok(said(unit, source));
             }
@@ -127,7 +129,7 @@ fn times(claim: &Claim, usual: f64, samples: usize) -> Result<Candidates, Error>
 pub(super) fn rates(claim: &Claim) -> Vec<Unit> {
     let names =
         ["rad/s", "deg/s", "mdps"].into_iter().filter_map(|name| Unit::read(Quantity::Rate, name));
-    // Of ranges of ±250, 500, 1000 and 2000 °/s in 16 bits.
+    // Ranges of ±250, 500, 1000 and 2000 °/s in 16 bits.
     let ranges =
         [131.0, 65.5, 32.8, 16.4].into_iter().filter_map(|each| counts(Quantity::Rate, each));
     let others = names.chain(ranges);
@@ -141,7 +143,7 @@ pub(super) fn rates(claim: &Claim) -> Vec<Unit> {
     }
 }
 
-/// The unit of the accelerometer, by what it shows at rest.
+/// The unit of the accelerometer, from its norm at rest.
 fn force(claim: &Claim, rest: Option<&Rest>, raw: &[Raw]) -> Result<(Unit, Source), Error> {
     let fits = |norm: f64| {
         let names = ["m/s2", "g", "mg"]

@@ -1,15 +1,15 @@
-//! What a log calls the anchors of a list.
+//! Matches the anchors of a list with the names that a log uses.
 
 use std::collections::BTreeMap;
 
 use crate::error::{Error, listed, quoted};
 
-/// The different labels of a log, numbered as they come.
+/// The distinct labels of a log, numbered in order of appearance.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Labels(BTreeMap<String, usize>);
 
 impl Labels {
-    /// The number of a label.
+    /// The number of a label, which is added if it is new.
     pub fn index(&mut self, label: &str) -> usize {
         let next = self.0.len();
         match self.0.get(label) {
@@ -18,11 +18,13 @@ impl Labels {
         }
     }
 
-    /// Which anchors of a list they mean, each at its number: the one of its name; if no label is a name of the list, the one
-    /// whose name ends with the same number, if only one does.
+    /// The index of the anchor that each label refers to.
+    ///
+    /// A label refers to the anchor of that name; if no label is a name in the list, to the only anchor whose name ends
+    /// with the same number.
     ///
     /// # Errors
-    /// No label means any, or list and log count from different numbers on.
+    /// No label refers to any anchor, or list and log start counting at different numbers.
     pub fn places(&self, anchors: &[String]) -> Result<Vec<Option<usize>>, Error> {
         let mut labels: Vec<_> = self.0.iter().collect();
         labels.sort_by_key(|(_, index)| **index);
@@ -33,7 +35,7 @@ impl Labels {
 
 fn places(labels: &[&str], anchors: &[String]) -> Result<Vec<Option<usize>>, Error> {
     let named: Vec<_> = labels.iter().map(|label| by_name(label, anchors)).collect();
-    // A log that has names of the list means by them what the list does, and nothing by a number alone.
+    // A log that uses names of the list means the same anchors by them, and nothing by a number alone.
     let places = if named.iter().any(Option::is_some) {
         named
     } else {
@@ -56,7 +58,7 @@ fn places(labels: &[&str], anchors: &[String]) -> Result<Vec<Option<usize>>, Err
     Ok(places)
 }
 
-/// The same of a label alone.
+/// The index of the anchor that a single label refers to.
 pub(super) fn place(label: &str, anchors: &[String]) -> Option<usize> {
     by_name(label, anchors).or_else(|| by_number(label, anchors))
 }
@@ -72,8 +74,8 @@ fn by_number(label: &str, anchors: &[String]) -> Option<usize> {
     numbered.next().filter(|_| numbered.next().is_none())
 }
 
-/// Where the list and the log begin to count, if both number as many anchors one after the other, and not from the same number
-/// on: most names are found in the list then, each for another anchor.
+/// The first numbers of list and log, if both number equally many anchors consecutively but from different starts: most
+/// labels then match the list, each for the wrong anchor.
 fn counted_apart(labels: &[&str], anchors: &[String]) -> Option<[u32; 2]> {
     if labels.len() != anchors.len() || anchors.len() < 3 {
         return None;
@@ -89,7 +91,7 @@ fn counted_apart(labels: &[&str], anchors: &[String]) -> Option<[u32; 2]> {
     (listed != heard).then_some([listed, heard])
 }
 
-/// The number at the end of a name, behind letters alone.
+/// The number at the end of a name that otherwise starts with letters alone.
 fn number(name: &str) -> Option<u32> {
     let digits = name.trim_start_matches(|letter: char| !letter.is_ascii_digit());
     digits.parse().ok()

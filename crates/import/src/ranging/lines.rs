@@ -1,4 +1,4 @@
-//! A line of text for the ranges to all anchors at a moment.
+//! Logs with one line of text for the ranges to all anchors at one epoch.
 
 use super::{Found, USUAL_STEP};
 use crate::clock::unit_of_range_times;
@@ -8,25 +8,25 @@ use crate::moment;
 use crate::options::{Options, TimeUnit};
 use crate::text::{Text, letters};
 
-/// How many lines are looked at to recognise a log.
+/// The number of lines that are looked at to recognise a log.
 const SAMPLE: usize = 400;
 
-/// What a line says.
+/// The content of a line.
 #[derive(Debug, Clone, PartialEq)]
 struct Message {
-    /// Time of the radio's own clock, s.
+    /// Time on the radio's own clock, s.
     clock: Option<f64>,
-    /// Anchors by the names that the radio gives them, and m.
+    /// The anchors, by the names that the radio gives them, with their ranges in m.
     ranges: Vec<(String, f64)>,
-    /// Where it begins in the line.
+    /// The position in the line where the message begins.
     begins: usize,
 }
 
-/// Lines of one radio or program.
+/// The format of the lines of one radio or program.
 #[derive(Debug)]
 struct Form {
     title: &'static str,
-    /// What every such line holds.
+    /// The text that every such line contains.
     mark: &'static str,
     parse: fn(&str) -> Option<Message>,
 }
@@ -39,7 +39,7 @@ const FORMS: [Form; 5] = [
     Form { title: "Makerfabs AT+RANGE", mark: "AT+RANGE=", parse: makerfabs },
 ];
 
-/// Reads a log of such lines; none if it is no such log.
+/// Reads a log of such lines; `None` if it is not one.
 pub(super) fn read(
     text: &Text<'_>,
     options: &Options,
@@ -57,7 +57,7 @@ pub(super) fn read(
             None if words.contains(form.mark) => damage.add(Fault::Torn, line.number, || {
                 format!("expected a line of {}, found {}", form.title, quoted(&words))
             }),
-            // What else a radio prints: its prompt, its version, ranges between anchors.
+            // Other output of a radio: its prompt, its version, ranges between anchors.
             None => {}
         }
     }
@@ -81,7 +81,7 @@ fn recognised(text: &Text<'_>) -> Option<&'static Form> {
     })
 }
 
-/// The time before a line's message, in s if it is a date or a time of day.
+/// The time that precedes a line's message, in s if it is a date or a time of day (`true`).
 fn said_time(before: &str) -> Option<(f64, bool)> {
     let stamp = before.trim_matches(|letter: char| !letter.is_ascii_alphanumeric());
     if let Some(moment) = moment::read(stamp.as_bytes()) {
@@ -90,7 +90,7 @@ fn said_time(before: &str) -> Option<(f64, bool)> {
     stamp.parse().ok().filter(|time: &f64| time.is_finite()).map(|time| (time, false))
 }
 
-/// The time of each message, µs, and where it is from.
+/// The time of each message, µs, and the origin of these times.
 fn times(
     messages: &[(Option<(f64, bool)>, Message)],
     options: &Options,
@@ -124,7 +124,7 @@ fn times(
     }
 }
 
-/// `mc 0f 00000663 000005a3 00000512 000004cb 095f c1 00024c24 a0:0`
+/// Parses `mc 0f 00000663 000005a3 00000512 000004cb 095f c1 00024c24 a0:0`.
 fn trek(line: &str, mark: &str) -> Option<Message> {
     let begins = line.find(mark)?;
     let words: Vec<_> = line[begins + mark.len()..].split_whitespace().collect();
@@ -145,7 +145,7 @@ fn trek(line: &str, mark: &str) -> Option<Message> {
     Some(Message { clock, ranges: valid, begins })
 }
 
-/// `1151[5.00,8.00,2.25]=6.48 0CA8[0.00,8.00,2.25]=6.51 le_us=2576 est[6.97,8.17,-1.37,53]`
+/// Parses `1151[5.00,8.00,2.25]=6.48 0CA8[0.00,8.00,2.25]=6.51 le_us=2576 est[6.97,8.17,-1.37,53]`.
 fn les(line: &str) -> Option<Message> {
     let mut ranges = Vec::new();
     let mut begins = line.len();
@@ -158,7 +158,7 @@ fn les(line: &str) -> Option<Message> {
     (!ranges.is_empty()).then_some(Message { clock: None, ranges, begins })
 }
 
-/// `DIST,4,AN0,1151,5.00,8.00,2.25,6.44,AN1,…,POS,7.10,8.24,-1.31,97`
+/// Parses `DIST,4,AN0,1151,5.00,8.00,2.25,6.44,AN1,…,POS,7.10,8.24,-1.31,97`.
 fn lec(line: &str) -> Option<Message> {
     let begins = line.find("DIST,")?;
     let mut fields = line[begins..].split(',').skip(1);
@@ -172,7 +172,7 @@ fn lec(line: &str) -> Option<Message> {
     Some(Message { clock: None, ranges, begins })
 }
 
-/// `AT+RANGE=tid:1,mask:0F,seq:128,range:(997,1321,…),ancid:(0,1,…)`
+/// Parses `AT+RANGE=tid:1,mask:0F,seq:128,range:(997,1321,…),ancid:(0,1,…)`.
 fn makerfabs(line: &str) -> Option<Message> {
     let begins = line.find("AT+RANGE=")?;
     let list = |name: &str| {

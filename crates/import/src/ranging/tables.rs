@@ -1,4 +1,4 @@
-//! Tables of which a row is no range: the six stamps of an exchange, or by how much one anchor is farther than another.
+//! Tables whose rows are not ranges: the six timestamps of an exchange, or how much farther one anchor is than another.
 
 use std::borrow::Cow;
 
@@ -12,14 +12,14 @@ use crate::options::Options;
 use crate::text::{Text, letters};
 use crate::unit::Unit;
 
-/// The columns of the stamps: poll, response and final message, each sent and received.
+/// The columns of the timestamps: poll, response and final message, each sent and received.
 const STAMPS: [&str; 6] = ["t1", "t2", "t3", "t4", "t5", "t6"];
-/// What Crazyflie's client calls the difference of two anchors.
+/// The names that Crazyflie's client gives to the difference of two anchors.
 const CRAZYFLIE: [&str; 2] = ["tdoa2.d", "tdoa3.d"];
-/// Beyond the counter's 40 bits.
+/// The end of the counter's range of 40 bits.
 const END: u64 = 1 << 40;
 
-/// What the columns are.
+/// The columns of a table.
 #[derive(Debug)]
 enum Form {
     Stamps {
@@ -31,11 +31,11 @@ enum Form {
         anchors: [Place; 2],
         difference: Place,
     },
-    /// A column a pair of anchors.
+    /// One column for each pair of anchors.
     Pairs(Vec<(usize, [String; 2])>),
 }
 
-/// Reads such a table; none if it is none.
+/// Reads such a table; `None` if it is not one.
 pub(super) fn read(
     text: &Text<'_>,
     options: &Options,
@@ -82,7 +82,7 @@ pub(super) fn read(
                 found.add_exchange(time_us, &anchor, stamps, level_dbm);
             }
             Said::Differences(differences) => {
-                // A client that logs each of many at its own rate repeats those that are not new.
+                // A client that logs several values at its own rate repeats those that are not new.
                 let are_many = differences.len() > 1;
                 for difference in &differences {
                     if !(are_many && before.contains(difference)) {
@@ -97,10 +97,10 @@ pub(super) fn read(
     Ok(Some((found, format!("{}, time in {unit}: {from}", form.title()), damage)))
 }
 
-/// What a row says.
+/// The content of a row.
 #[derive(Debug)]
 enum Said {
-    /// A message was lost.
+    /// A row without data: a message was lost.
     Nothing,
     Exchange {
         anchor: String,
@@ -153,7 +153,7 @@ fn form(heading: &Heading<'_>) -> Option<Form> {
     (!pairs.is_empty()).then_some(Form::Pairs(pairs))
 }
 
-/// What a row says; none if it is torn.
+/// The content of a row; `None` if it is damaged.
 fn said(table: &NamedTable<'_>, form: &Form, fields: &[Cow<'_, [u8]>]) -> Option<Said> {
     let field = |at: usize| fields.get(at).map(AsRef::as_ref).unwrap_or_default();
     let number = |at: usize| table.number(field(at)).filter(|number| number.is_finite());

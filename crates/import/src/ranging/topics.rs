@@ -1,4 +1,4 @@
-//! Topics of ROS: which anchor each range is to.
+//! Ranges in ROS topics: which anchor each one is to.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,7 @@ use crate::error::{Error, listed};
 use crate::options::Options;
 use crate::part::Part;
 
-/// Reads a bag of ROS 1 or an MCAP file; none if it is none.
+/// Reads a bag of ROS 1 or an MCAP file; `None` if it is neither.
 pub(super) fn read(
     bytes: &[u8],
     anchors: &[String],
@@ -54,11 +54,11 @@ pub(super) fn read(
     Ok(Some((found, conclusion, damage)))
 }
 
-/// The name of an anchor in each topic's name, if that tells more anchors apart than the frames of the messages; none if those
-/// do, or messages name the anchors.
+/// The anchor's name in the name of each topic, if that distinguishes more anchors than the frames of the messages do;
+/// `None` if the frames do, or if messages name the anchors.
 ///
 /// # Errors
-/// If both name as many anchors, but others.
+/// If both distinguish equally many anchors, but different ones.
 fn names_by_topic(
     topics: &RangeTopics<'_>,
     wanted: &[usize],

@@ -1,4 +1,4 @@
-//! A column an anchor.
+//! Tables with one column for each anchor.
 
 use super::labels::place;
 use super::{Found, USUAL_STEP};
@@ -12,9 +12,9 @@ use crate::options::Options;
 use crate::text::{Text, letters};
 use crate::unit::{Quantity, Unit};
 
-/// Fewer columns of ranges are taken for something else.
+/// The smallest number of range columns; a table with fewer is taken for something else.
 const FEWEST: usize = 2;
-/// What stands before an anchor's name in that of a column.
+/// The words that may precede an anchor's name in that of a column.
 const BEFORE: [&str; 10] =
     ["ranging.distance", "distance", "ranging", "range", "dist", "anchor", "rng", "anc", "d", "r"];
 
@@ -23,13 +23,13 @@ struct Ranges {
     at: usize,
     label: String,
     scale: f64,
-    /// The word for a range before the label, if there is one.
+    /// The word for a range that precedes the label, if there is one.
     stem: Option<&'static str>,
-    /// Whether there is such an anchor.
+    /// Whether the anchor is in the list.
     is_listed: bool,
 }
 
-/// Reads a table with a column an anchor; none if it is none.
+/// Reads a table with one column for each anchor; `None` if it is not one.
 pub(super) fn read(
     text: &Text<'_>,
     anchors: &[String],
@@ -87,8 +87,8 @@ pub(super) fn read(
     Ok(Some((found, conclusion, damage)))
 }
 
-/// The columns whose names mean an anchor of the list, alone or behind a word for a range, and those of other numbers behind the
-/// same word: to anchors that are not listed.
+/// The columns whose names refer to an anchor of the list, alone or behind a word for a range; and those with other
+/// numbers behind the same word, which are ranges to unlisted anchors.
 fn columns(heading: &Heading<'_>, anchors: &[String], options: &Options) -> Vec<Ranges> {
     let said = options.units.of("range");
     let names = heading.names().iter().enumerate();
@@ -105,7 +105,7 @@ fn columns(heading: &Heading<'_>, anchors: &[String], options: &Options) -> Vec<
     columns
 }
 
-/// A name and the unit in brackets or behind it.
+/// Splits a name from the unit in brackets or behind it.
 fn taken_apart(name: &str) -> (&str, Option<Unit>) {
     let (base, bracket) = split_unit(name);
     if let Some(unit) = bracket.and_then(|text| Unit::read(Quantity::Length, text)) {
@@ -119,7 +119,7 @@ fn taken_apart(name: &str) -> (&str, Option<Unit>) {
     }
 }
 
-/// The anchor that a column's name means, the word for a range before it, and whether there is such an anchor.
+/// The anchor that a column's name refers to, the word for a range before it, and whether the anchor is in the list.
 fn label(name: &str, anchors: &[String]) -> Option<(String, Option<&'static str>, bool)> {
     let is_anchor = |text: &str| anchors.iter().any(|anchor| anchor.eq_ignore_ascii_case(text));
     let bare = |text: &str| text.trim_matches(|letter: char| !letter.is_alphanumeric()).to_owned();

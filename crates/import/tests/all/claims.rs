@@ -7,7 +7,7 @@ use crate::walk;
 
 const DEGREE: f64 = 180.0 / std::f64::consts::PI;
 
-/// A walk under a header, each row changed.
+/// A walk under a header, with `change` applied to each row.
 fn log(header: &str, change: impl Fn([f64; 7]) -> [f64; 7]) -> Vec<u8> {
     let rows = walk::rows(20).into_iter().map(|row| {
         let fields = change(row).map(|value| format!("{value:.6}"));
@@ -31,7 +31,7 @@ fn refusal(bytes: &[u8]) -> String {
     read(bytes, "", "").map(|log| log.conclusions).expect_err("a refusal").to_string()
 }
 
-/// Whether a log is the walk, whatever its times count from.
+/// Whether a log is the walk, whatever the origin of its times.
 fn is_the_walk(log: &Inertial) -> bool {
     let rows = walk::rows(20);
     let start = log.samples[0].time_us;

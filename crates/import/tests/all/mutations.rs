@@ -1,4 +1,4 @@
-//! Damaged and random logs, by seeds: nothing panics or hangs, and what is read is in order and finite.
+//! Damaged and random logs, generated from seeds: nothing panics or hangs, and what is read is in order and finite.
 
 use kestirim_import::Options;
 use kestirim_import::{inertial, ranging};
@@ -33,7 +33,7 @@ fn logs() -> Vec<Vec<u8>> {
     ]
 }
 
-/// Logs of ranges, a moment a line.
+/// Logs of ranges, one epoch a line.
 fn logs_of_ranges() -> Vec<Vec<u8>> {
     let log = |line: fn(u32) -> String| (0..80).map(line).collect::<String>().into_bytes();
     let wide = |i| format!("{},{:.3},{:.3},\n", i * 100, f64::from(i) * 0.1, 7.0);

@@ -1,4 +1,4 @@
-//! The reader that `host-sim` had before: what it reads, the importer reads the same, bit for bit.
+//! The reader that `host-sim` had before the importer: what it reads, the importer reads identically, bit for bit.
 
 use std::array;
 
@@ -8,14 +8,14 @@ use kestirim_import::inertial::Sample;
 const CSV: [&str; 7] = ["t", "ax", "ay", "az", "gx", "gy", "gz"];
 const TRUTH: [&str; 3] = ["gt_x", "gt_y", "gt_z"];
 
-/// A log and the truth in it.
+/// A log with its ground truth.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Log {
     pub(crate) samples: Vec<Sample>,
     pub(crate) truth: Option<Vec<[f64; 3]>>,
 }
 
-/// Reads a log; nothing if it is refused.
+/// Reads a log; `None` if it is refused.
 pub(crate) fn read(bytes: &[u8]) -> Option<Log> {
     let text = String::from_utf8(bytes.to_vec()).ok()?;
     let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);

@@ -1,4 +1,4 @@
-//! The development recordings of walks, where they are at hand.
+//! The development recordings of walks, where they are available.
 
 use std::fs;
 use std::path::Path;
@@ -8,11 +8,11 @@ use kestirim_import::inertial;
 
 use crate::plain;
 
-/// Where the recordings are, beside the working copy or as CI has them.
+/// The folders of the recordings: beside the working copy, or as CI has them.
 const FOLDERS: [&str; 2] =
     ["../../../shared/data/pedestrian", "../../../../shared/data/pedestrian"];
 
-/// All walks, by name.
+/// All walks, with their names.
 pub(crate) fn walks() -> Vec<(String, Vec<u8>)> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let Some(folder) = FOLDERS.iter().map(|at| here.join(at)).find(|at| at.is_dir()) else {
@@ -59,8 +59,8 @@ fn plain_recordings_are_read_as_before() {
     }
 }
 
-/// Nobody stands still before their log begins: a stance of a fast walk, in which the foot rolls, is no rest that shows the
-/// gyroscope's bias.
+/// These parts do not begin with a still stand: the stance of a fast walk, in which the foot rolls, is not a rest that
+/// shows the gyroscope's bias.
 #[test]
 fn parts_of_walks_are_read_and_swapped_axes_in_them_are_named() {
     const HEADER: &str = "t,ax,ay,az,gx,gy,gz";
@@ -94,7 +94,7 @@ fn parts_of_walks_are_read_and_swapped_axes_in_them_are_named() {
     assert!(named * 10 >= parts * 7, "{named} of {parts}");
 }
 
-/// A recording under a header, each row changed.
+/// A recording under a header, with `change` applied to each row.
 fn written(log: &plain::Log, header: &str, change: impl Fn([f64; 7]) -> [f64; 7]) -> Vec<u8> {
     let mut text = format!("{header}\n");
     for sample in &log.samples {

@@ -1,4 +1,4 @@
-//! How long a long log takes, beside the reader before.
+//! The time that a long log takes, compared with the previous reader.
 
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -10,7 +10,7 @@ use crate::{plain, walk};
 
 const ROWS: usize = 2_800_000;
 
-/// `cargo test --release -p kestirim-import --test all -- --ignored --nocapture long_log`
+/// Run with `cargo test --release -p kestirim-import --test all -- --ignored --nocapture long_log`.
 #[test]
 #[ignore = "a measurement of some seconds, which needs an optimised build"]
 fn a_long_log_takes_little_longer_than_before() {

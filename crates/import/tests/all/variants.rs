@@ -1,4 +1,4 @@
-//! One walk, written in many ways that a person reads at a glance: read right, or refused with the cause.
+//! One walk, written in many ways that a person reads at a glance: each is read right, or refused with the cause.
 
 use std::fmt::Write as _;
 
@@ -13,7 +13,7 @@ struct Way {
     header: Header,
     separator: &'static str,
     decimal_comma: bool,
-    /// How many of the unit in the log make a m/s², a rad/s, a second; and how they are written.
+    /// The number of log units in 1 m/s², 1 rad/s and 1 s, and their symbols.
     acceleration: (f64, &'static str),
     rate: (f64, &'static str),
     time: (f64, &'static str),
@@ -23,15 +23,15 @@ struct Way {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Header {
-    /// `t,ax,…`
+    /// The header `t,ax,…`.
     Plain,
     /// Other names without units.
     Named,
     /// Names with units in brackets.
     Brackets,
-    /// Names with units behind them.
+    /// Names with units as a suffix.
     Behind,
-    /// A line of units under the names.
+    /// A line of units below the names.
     Line,
     /// A comment.
     Comment,
@@ -70,7 +70,7 @@ const G: f64 = 9.806_65;
 const DEGREE: f64 = 180.0 / std::f64::consts::PI;
 
 impl Way {
-    /// The log, and which of the rows are not in it.
+    /// The log, and the rows that it lacks.
     fn write(&self, rows: &[[f64; 7]]) -> (Vec<u8>, Vec<usize>) {
         let mut text = String::new();
         if self.harm == Harm::Preamble {
@@ -295,7 +295,7 @@ fn ways() -> Vec<Way> {
     ways
 }
 
-/// How a way came out.
+/// The outcome of reading a log.
 #[derive(Debug)]
 enum Outcome {
     Right,
@@ -312,7 +312,7 @@ fn outcome(way: &Way, rows: &[[f64; 7]]) -> Outcome {
     }
 }
 
-/// What is wrong with a log of these rows.
+/// Describes how a log deviates from these rows, if it does.
 fn compare(
     log: &Inertial,
     rows: &[[f64; 7]],
@@ -342,7 +342,7 @@ fn compare(
     None
 }
 
-/// Reads all ways of a walk: how many right, refused; fails at a wrong one.
+/// Reads a walk in all ways and counts those read right and those refused; fails at a wrong one.
 fn count(name: &str, rows: &[[f64; 7]], ways: &[Way]) -> [usize; 2] {
     let mut counts = [0; 2];
     let mut refusals = std::collections::BTreeMap::new();

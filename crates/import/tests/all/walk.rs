@@ -2,17 +2,18 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// Steps of a second.
+/// Samples per second, Hz.
 pub(crate) const RATE: f64 = 100.0;
 
-/// Rows of t, ax, ay, az, gx, gy, gz in s, m/s², rad/s, of so many strides, as a sensor mounted askew gives them.
+/// Rows of t, ax, ay, az, gx, gy, gz in s, m/s², rad/s, over `strides` strides, as an obliquely mounted sensor gives
+/// them.
 pub(crate) fn rows(strides: usize) -> Vec<[f64; 7]> {
     let stride = 120;
     let count = 200 + strides * stride;
     (0..count).map(|i| row(i as f64 / RATE)).collect::<Vec<_>>()
 }
 
-/// Pitch, roll and yaw, rad, and the position, m.
+/// Pitch, roll and yaw, rad, and the position, m, at a time.
 fn pose(t: f64) -> ([f64; 3], [f64; 3]) {
     let phase = (t - 2.0).max(0.0) / 1.2;
     let (stride, part) = (phase.floor(), phase.fract());
@@ -27,7 +28,7 @@ fn pose(t: f64) -> ([f64; 3], [f64; 3]) {
     ([pitch, roll, yaw], [forward, 0.1 * eased * (1.0 - eased), height])
 }
 
-/// The turn from the body to the room.
+/// The rotation from the body to the room.
 fn turn([pitch, roll, yaw]: [f64; 3]) -> [[f64; 3]; 3] {
     let about = |axis: usize, angle: f64| {
         let (s, c) = angle.sin_cos();
@@ -60,12 +61,12 @@ fn row(t: f64) -> [f64; 7] {
     specific_force[2] += 9.806_65;
     let force: [f64; 3] =
         std::array::from_fn(|i| (0..3).map(|k| turns[1][k][i] * specific_force[k]).sum());
-    // RᵀR' is the rate's cross product.
+    // RᵀR' is the cross-product matrix of the rate.
     let change: [[f64; 3]; 3] = std::array::from_fn(|i| {
         std::array::from_fn(|j| (turns[2][i][j] - turns[0][i][j]) / (2.0 * STEP))
     });
     let cross = product(transposed(turns[1]), change);
-    // Noise that is the same each time.
+    // Deterministic noise.
     let noise = |seed: f64| ((t * 977.0 + seed) * 12.9898).sin() * 43_758.545 % 1.0 - 0.0;
     [
         t,

@@ -1,11 +1,11 @@
-//! Whatever is fed, nothing panics, and what comes out is finite or an error.
+//! Property tests: whatever the input, nothing panics, and the result is finite or an error.
 
 use kestirim_imu_calibration::{Calibration, Gyroscope, Magnetometer, Pose, Poses, Triad, Turn};
 use kestirim_scalar::{Q12_20, Scalar};
 use nalgebra::SVector;
 use proptest::prelude::*;
 
-/// Everyday values with wild ones among them.
+/// Ordinary values mixed with extreme ones.
 fn component() -> impl Strategy<Value = f64> {
     prop_oneof![
         6 => -12.0..12.0f64,
@@ -56,7 +56,7 @@ fn check<T: Scalar>(vectors: &[[f64; 3]], gravity: f64, noise: f64) {
             let _ = turn.push(&cast(&three[0]), T::from_f64(0.1));
         }
         let _ = gyroscope.add(&turn, &cast(&three[1]), &cast(&three[2]));
-        // One that fits, too.
+        // A direction that fits, too.
         let after = turn.to_beginning(&cast(&three[1]));
         let _ = gyroscope.add(&turn, &after, &cast(&three[1]));
         let _ = magnetometer.add(&cast(&three[0]));

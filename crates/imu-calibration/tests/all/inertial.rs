@@ -1,4 +1,4 @@
-//! Accelerometers and gyroscopes whose errors are known.
+//! Tests with accelerometers and gyroscopes whose errors are known.
 
 use crate::common::{
     GRAVITY, Noise, accelerometer, attitudes, cast, gyroscope, gyroscope_of, measured, poses,
@@ -10,7 +10,7 @@ use kestirim_imu_calibration::{
 use kestirim_scalar::{Q12_20, Scalar};
 use nalgebra::{Matrix3, Rotation3, SVector, Vector3};
 
-/// How many σ off the truth the worst parameter is.
+/// The largest deviation of a parameter from the truth, in σ.
 fn worst<T: Scalar>(
     found: &Triad<T>,
     truth: &Triad<f64>,
@@ -46,7 +46,7 @@ fn the_accelerometer_is_found<T: Scalar>() {
         assert!(fit.offset_sigma.iter().all(|sigma| sigma.to_f64() < 0.03), "{fit:?}");
         assert!(fit.residual.to_f64() < 0.03);
     }
-    // Of nine parameters one is beyond 2 σ in a third of the trials, if the σ are right; they are the larger of two.
+    // If the σ are right, one of nine parameters is beyond 2 σ in a third of the trials; they are the larger of two.
     assert!((2..=20).contains(&beyond), "{beyond} of {all}");
 }
 
@@ -58,7 +58,7 @@ fn twelve_poses_tell_nine_parameters_within_their_sigma() {
 
 #[test]
 fn six_sides_tell_offset_and_scale() {
-    // Its axes are at right angles: what is not looked for does not disturb.
+    // The axes are orthogonal, so that parameters which are not estimated do not disturb.
     let matrix = Matrix3::from_diagonal(&Vector3::new(0.98, 1.03, 1.01));
     let truth = Triad { matrix, ..accelerometer() };
     let mut sides = Poses::<f64, 6>::new();
@@ -73,7 +73,7 @@ fn six_sides_tell_offset_and_scale() {
     assert_eq!(fit.matrix_sigma[0][1], None);
     assert!((fit.triad.offset - truth.offset).norm() < 1e-9, "{fit:?}");
     assert!((fit.triad.matrix - truth.matrix).norm() < 1e-9, "{fit:?}");
-    // One pose each way along an axis: σ/√2.
+    // One pose in each direction of an axis: σ/√2.
     assert!((fit.offset_sigma[0] - 0.01 / 2.0_f64.sqrt()).abs() < 1e-3, "{fit:?}");
     assert_eq!(
         sides.add(Pose { samples: 1.0, specific_force: Vector3::z(), ..Pose::new() }),
@@ -96,7 +96,7 @@ fn poses_that_do_not_tell_are_refused() {
     assert_eq!(refusal(&attitudes(5)), Error::TooFew { found: 5, needed: 6 });
     let same = [attitudes(1)[0]; 12];
     assert_eq!(refusal(&same), Error::NotObservable);
-    // Turned about one axis alone: the other's offset stays unknown.
+    // Turned about only one axis: the offset of that axis stays unknown.
     let about: Vec<_> = (0..12)
         .map(|step| Rotation3::from_axis_angle(&Vector3::x_axis(), 0.5 * f64::from(step)))
         .collect();
@@ -107,7 +107,7 @@ fn poses_that_do_not_tell_are_refused() {
         })
         .collect();
     assert_eq!(refusal(&tilted), Error::NotObservable);
-    // Of other numbers than gravity's.
+    // Arguments other than gravity and noise of a sensor.
     let poses = poses::<f32>(&attitudes(12), &mut Noise(1), 0.005);
     assert_eq!(poses.accelerometer(1.0, 0.01), Err(Error::Inconsistent));
     assert_eq!(poses.accelerometer(0.0, 0.01), Err(Error::NotPositive));
@@ -148,7 +148,7 @@ fn the_gyroscope_is_found<T: Scalar>(tolerance: f64) {
     assert_eq!(exact.model, GyroscopeModel::Full);
     let off = exact.triad.matrix.map(T::to_f64) - gyroscope().matrix;
     assert!(off.amax() < tolerance, "{off}");
-    // One pass leaves what is of second order.
+    // One pass leaves errors of second order.
     let first = of(1, 0.0).solve(T::from_f64(0.003)).unwrap();
     let off = first.triad.matrix.map(T::to_f64) - gyroscope().matrix;
     assert!(off.amax() < 4e-3, "{off}");
@@ -169,7 +169,7 @@ fn turns_about_one_axis_tell_its_scale_alone() {
     let about: Vec<_> = (0..8)
         .map(|step| Rotation3::from_axis_angle(&Vector3::x_axis(), 0.8 * f64::from(step)))
         .collect();
-    // Without misalignments, which these turns do not tell from scales.
+    // Without misalignments, which these turns cannot separate from scales.
     let scale = Vector3::new(1.03, 1.0, 1.0);
     let assumed = Triad::identity();
     let mut fit = Gyroscope::<f64>::new(assumed).unwrap();
@@ -194,7 +194,7 @@ fn turns_that_do_not_tell_are_refused() {
     let assumed = Triad::<f64>::identity();
     let mut fit = Gyroscope::new(assumed).unwrap();
     assert_eq!(fit.solve(0.003), Err(Error::TooFew { found: 0, needed: 1 }));
-    // About gravity.
+    // A turn about gravity.
     let mut turn = Turn::new(assumed).unwrap();
     for _ in 0..100 {
         turn.push(&Vector3::z(), 0.01).unwrap();
@@ -204,7 +204,7 @@ fn turns_that_do_not_tell_are_refused() {
     }
     assert_eq!(fit.solve(0.003), Err(Error::NotObservable));
     let before = fit;
-    // A turn that the gyroscope has not seen.
+    // A turn that the gyroscope did not measure.
     assert_eq!(fit.add(&turn, &Vector3::z(), &Vector3::x()), Err(Error::Inconsistent));
     assert_eq!(fit.add(&turn, &Vector3::z(), &-Vector3::z()), Err(Error::Inconsistent));
     assert_eq!(fit.add(&turn, &Vector3::z(), &Vector3::zeros()), Err(Error::Empty));

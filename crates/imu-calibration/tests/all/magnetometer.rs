@@ -1,18 +1,18 @@
-//! A magnetometer whose hard and soft iron are known.
+//! Tests with a magnetometer whose hard and soft iron are known.
 
 use crate::common::{Noise, cast};
 use kestirim_imu_calibration::{Error, Magnetometer, MagnetometerFit};
 use kestirim_scalar::Scalar;
 use nalgebra::{Matrix3, Vector3};
 
-/// µT.
+/// The strength of the field, µT.
 const FIELD: f64 = 48.0;
 
 fn hard() -> Vector3<f64> {
     Vector3::new(31.0, -12.0, 20.0)
 }
 
-/// Symmetric, of determinant 1.
+/// The soft iron matrix, symmetric, of determinant 1.
 fn soft() -> Matrix3<f64> {
     let matrix: Matrix3<f64> = Matrix3::new(1.1, 0.05, -0.03, 0.05, 0.92, 0.04, -0.03, 0.04, 1.0);
     matrix / matrix.determinant().cbrt()
@@ -25,7 +25,7 @@ fn fit<T: Scalar>(
     accept: impl Fn(&Vector3<f64>) -> bool,
 ) -> Result<MagnetometerFit<T>, Error> {
     let mut random = Noise(seed);
-    // A guess that is off by half the field.
+    // An initial guess that is off by half the field.
     let mut magnetometer =
         Magnetometer::new(cast(&Vector3::new(10.0, 0.0, 10.0)), T::from_f64(50.0))?;
     let mut taken = 0;
@@ -81,7 +81,7 @@ fn without_noise_they_are_found_exactly() {
 #[test]
 fn directions_that_do_not_tell_are_refused() {
     assert_eq!(fit::<f32>(11, 0.3, 1, |_| true), Err(Error::TooFew { found: 11, needed: 12 }));
-    // Turned about the vertical alone, as on a table: a ring.
+    // Turned only about the vertical, as on a table: a ring.
     for noise in [0.0, 0.3] {
         let ring = |d: &Vector3<f64>| (d.z - 0.4).abs() < 0.01;
         assert_eq!(fit::<f32>(500, noise, 1, ring), Err(Error::NotObservable));
@@ -89,7 +89,7 @@ fn directions_that_do_not_tell_are_refused() {
         let cap = |d: &Vector3<f64>| d.z > 0.95;
         assert_eq!(fit::<f32>(500, noise, 1, cap), Err(Error::NotObservable));
     }
-    // One direction alone.
+    // Only one direction.
     let mut still = Magnetometer::<f32>::new(Vector3::zeros(), 50.0).unwrap();
     for _ in 0..100 {
         still.add(&Vector3::new(20.0, 5.0, -40.0)).unwrap();

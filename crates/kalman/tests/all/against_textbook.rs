@@ -8,7 +8,7 @@ use proptest::prelude::*;
 type Matrix4 = SMatrix<f64, 4, 4>;
 type Vector4 = SVector<f64, 4>;
 
-/// A positive definite P with a few orders of magnitude between its variances.
+/// A positive definite P whose variances span a few orders of magnitude.
 fn covariance() -> impl Strategy<Value = Matrix4> {
     proptest::array::uniform16(-1.0..1.0f64).prop_map(|entries| {
         let root = Matrix4::from_row_slice(&entries);
@@ -151,7 +151,7 @@ fn each_error_has_its_cause() {
     assert_eq!(estimate.update(&row, f32::NAN, 1.0), Err(Error::NotFinite));
     for infinity in [f32::INFINITY, f32::NEG_INFINITY] {
         assert_eq!(estimate.update(&row, infinity, 1.0), Err(Error::NotFinite));
-        // … even where nothing is to be learnt.
+        // An infinite innovation is refused even where nothing is to be learnt.
         let mut known = Gaussian::new(estimate.mean, Covariance::zero());
         let before = known;
         assert_eq!(known.update(&row, infinity, 1.0), Err(Error::NotFinite));

@@ -1,4 +1,4 @@
-//! Which form of the covariance stays positive definite: the measurement behind this crate's choice.
+//! Which forms of the covariance stay positive definite: the measurement on which this crate's choice rests.
 //! `cargo test -p kestirim-kalman --test all covariance_forms:: -- --nocapture` prints the table.
 
 mod forms;
@@ -7,15 +7,15 @@ use forms::{Conventional, Form, Joseph, Ours, Ud};
 use kestirim_scalar::{Q12_20, Scalar};
 use nalgebra::{Matrix4, Vector4};
 
-/// What is asked of a covariance.
+/// A task that a form of the covariance must survive.
 struct Task {
     name: &'static str,
     variances: [f64; 4],
-    /// Measurement noise.
+    /// Variance of the measurement noise.
     r: f64,
-    /// White acceleration of a constant-velocity motion, or 0 for four constants.
+    /// Spectral density of the acceleration of a constant-velocity motion, or 0 for four constants.
     q: f64,
-    /// All rows look the same way within this angle.
+    /// Range of the angle of the rows, rad: how far their directions differ.
     spread: f64,
 }
 
@@ -49,7 +49,7 @@ fn definiteness(p: &Matrix4<f64>) -> f64 {
     (scale * p * scale).symmetric_eigenvalues().min()
 }
 
-/// The worst [`definiteness`] over so many updates; −∞ if one was not possible.
+/// The worst [`definiteness`] over this many updates; −∞ if one was not possible.
 fn worst<T: Scalar, F: Form<T>>(task: &Task, updates: u32) -> f64 {
     let number = T::from_f64;
     let mut form = F::new(task.variances.map(number));
@@ -83,7 +83,7 @@ fn worst<T: Scalar, F: Form<T>>(task: &Task, updates: u32) -> f64 {
     worst
 }
 
-/// In how many tasks the form stayed positive definite.
+/// The number of tasks in which the form stayed positive definite.
 fn survived<T: Scalar, F: Form<T>>(scalar: &str, updates: u32) -> usize {
     let worst = TASKS.map(|task| (task.name, worst::<T, F>(&task, updates)));
     for (task, worst) in worst {

@@ -67,7 +67,7 @@ struct Pendulum {
     dt: f64,
 }
 
-/// The height of its bob as measured.
+/// The measured height of the pendulum's bob.
 struct Height<T>(T);
 
 impl<T: Scalar> Process<T, 2> for Pendulum {
@@ -139,12 +139,12 @@ fn check_gate<T: Scalar>() {
         (verdict, ours.mean[0].to_f64())
     };
     assert_eq!(offer(&mut gate, 0.1).0, Verdict::Admit);
-    // A wild one now and then is left out for ever …
+    // Single outliers are rejected, however many there are,
     for _ in 0..10 {
         assert_eq!(offer(&mut gate, 300.0).0, Verdict::Reject);
         assert_eq!(offer(&mut gate, 0.1).0, Verdict::Admit);
     }
-    // … but the fourth in a row that says the same is believed.
+    // but the fourth agreeing one in a row is believed.
     for _ in 0..3 {
         assert_eq!(offer(&mut gate, 5.0).0, Verdict::Reject);
     }
@@ -246,14 +246,14 @@ fn a_decaying_velocity_hardly_cares_for_the_length_of_its_steps() {
         assert!((one.mean - many.mean).abs().max() < 0.35, "{seconds} s");
         assert!(one.covariance.to_matrix().symmetric_eigenvalues().min() > 0.0);
     }
-    // It coasts v τ far, and its velocity settles at q τ / 2.
+    // It coasts v τ far, and the variance of its velocity settles at q τ / 2.
     let still = run(1000, 60.0);
     assert!((still.mean - vector![2.0, 1.5, 0.0, 0.0, 0.1]).abs().max() < 1e-3);
     assert!((still.covariance.variances()[2] - 0.1).abs() < 2e-3);
 }
 
-/// With many states P hᵀ is computed by columns, and what a row does not reach is left out: but for what rounding may take, which
-/// grows with their number, the same numbers.
+/// With many states, P hᵀ is computed by columns, and columns that a row does not reach are skipped: the numbers are
+/// the same but for the allowance for rounding, which grows with the number of states.
 fn many_states_are_updated_as_few<T: Scalar>(tolerance: f64) {
     const FEW: usize = 4;
     const MANY: usize = 20;
@@ -262,7 +262,7 @@ fn many_states_are_updated_as_few<T: Scalar>(tolerance: f64) {
         SVector::zeros(),
         Covariance::from_variances(&[1.0, 2.0, 0.5, 4.0].map(number)),
     );
-    // The same four, in the same order, among others that nothing measures.
+    // Places of the same four states, in the same order, among others that nothing measures.
     let among = |index: usize| [3, 7, 8, 19][index];
     let mut variances = [T::ONE; MANY];
     for index in 0..FEW {

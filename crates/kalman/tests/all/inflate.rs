@@ -1,4 +1,4 @@
-//! Doubt in a block of the state leaves what ties it to the others.
+//! Inflating a block of the state leaves its covariances with the others.
 
 use kestirim_kalman::{Covariance, Error};
 use kestirim_scalar::{Q12_20, Scalar};

@@ -1,4 +1,4 @@
-//! What the filters' tests do not tell apart: single parts, at their bounds, from means that are not zero.
+//! Single parts that the tests of the filters do not tell apart: at their bounds, and from means that are not zero.
 
 use kestirim_kalman::{
     Covariance, Error, Gate, Gaussian, LinearObservation, Observation, SparseRow, Verdict,

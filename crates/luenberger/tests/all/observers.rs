@@ -1,4 +1,4 @@
-//! Each observer against its own definition.
+//! Each observer compared with its own definition.
 
 use kestirim_kalman::{Covariance, steady_state};
 use kestirim_luenberger::{
@@ -60,7 +60,7 @@ fn a_current_observer_is_its_equations() {
     }
 }
 
-/// With K = A⁻¹ L the current form's prediction is the predictor's estimate.
+/// With K = A⁻¹ L, the prediction of the current form is the estimate of the predictor.
 #[test]
 fn both_forms_agree() {
     let k = PLANT.a.try_inverse().unwrap() * GAIN;
@@ -76,7 +76,7 @@ fn both_forms_agree() {
     }
 }
 
-/// The gain of a settled filter, in either form, gives what the filter itself gives once it has settled.
+/// The gain of a settled filter, in either form, gives the estimates of the filter itself once that has settled.
 #[test]
 fn a_settled_kalman_filter_is_an_observer() {
     let q = Covariance::from_variances(&[0.01, 0.02, 0.005]);
@@ -130,7 +130,7 @@ fn a_reduced_observer_finds_what_is_not_measured() {
     reduced::<Q16_16>(3e-4);
 }
 
-/// A cart whose pusher has an offset, and whose actuator saturates.
+/// A cart whose actuator saturates and is subject to a constant offset.
 const CART: Plant<2, 1, 1> = Plant {
     a: Matrix2::new(1.0, 0.01, 0.0, 1.0),
     b: Vector2::new(0.000_05, 0.01),
@@ -138,7 +138,7 @@ const CART: Plant<2, 1, 1> = Plant {
 };
 
 fn pushed<T: Scalar>(most: f64) {
-    // Three poles at 0.9: characteristic polynomial (z − 0.9)³.
+    // Three poles at 0.9, with the characteristic polynomial (z − 0.9)³.
     let (l, ld) = (Vector2::new(0.3, 2.95), Matrix1::new(10.0));
     let gains = DisturbanceGains::new(&CART, &CART.b, &Matrix1::zeros(), &l, &ld);
     let mut observer =
@@ -172,7 +172,7 @@ fn a_constant_disturbance_is_learnt() {
 
 #[test]
 fn the_bias_of_a_sensor_is_learnt() {
-    // A stable lag seen by two sensors, the second with a bias.
+    // A stable lag measured by two sensors, the second of which has a bias.
     let plant = Plant { a: Matrix1::new(0.95), b: Matrix1::new(0.05), c: Matrix2x1::new(1.0, 1.0) };
     let (s, l, ld) =
         (Matrix2x1::new(0.0, 1.0), Matrix1x2::new(0.2, 0.0), Matrix1x2::new(-0.1, 0.1));
@@ -191,8 +191,8 @@ fn the_bias_of_a_sensor_is_learnt() {
 }
 
 proptest! {
-    /// e⁺ = (A − L C) e: two plants with different inputs, and observers equally wrong at first, stay equally
-    /// wrong.
+    /// e⁺ = (A − L C) e: observers of two plants with different inputs and equal initial errors keep equal
+    /// errors.
     #[test]
     fn the_error_does_not_depend_on_the_input(
         inputs in proptest::collection::vec((-9.0..9.0_f64, -9.0..9.0_f64), 1..200),

@@ -1,4 +1,5 @@
-//! What observers refuse: nothing that is not finite comes in or out, and nothing has changed then.
+//! Refusals of observers: nothing that is not finite is accepted or returned, and nothing is
+//! changed then.
 
 use kestirim_luenberger::{
     CurrentGains, CurrentObserver, DisturbanceGains, DisturbanceObserver, Error, Plant, Predictor,
@@ -96,7 +97,7 @@ fn what_is_not_finite_is_refused() {
 
 #[test]
 fn an_estimate_that_would_overflow_is_refused() {
-    // It doubles with every step.
+    // The state doubles with every step.
     let plant = Plant { a: Matrix1::new(2.0), b: Matrix1::new(1.0), c: Matrix1::<f64>::new(1.0) };
     let gains = PredictorGains::new(&plant, &Matrix1::zeros());
     let start = SVector::from([Q16_16::from_f64(20_000.0)]);
@@ -123,7 +124,7 @@ fn gains_must_fit() {
 }
 
 proptest! {
-    /// Neither any gain nor any sample makes an observer panic or its state other than finite.
+    /// No gain and no sample makes an observer panic, or its state infinite.
     #[test]
     fn nothing_panics(
         gain in proptest::array::uniform6(any::<f64>()),

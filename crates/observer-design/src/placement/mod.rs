@@ -14,18 +14,18 @@ use crate::poles::{arrange, multiplicity};
 use nalgebra::{Complex, SMatrix};
 use problem::{Checked, Problem};
 
-/// A gain and the poles that it gives.
+/// An observer gain and the poles that result from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Placement<const N: usize, const P: usize> {
     /// L of x̂⁺ = A x̂ + B u + L (y − C x̂), N × P.
     pub gain: SMatrix<f64, N, P>,
-    /// The eigenvalues which A − L C really has, in the order in which they were wanted: computed with 106 bits
+    /// The actual eigenvalues of A − L C in the order of the wanted ones, computed with 106 bits
     /// from the doubles in `gain`.
     pub poles: [PlacedPole; N],
-    /// Error of the worst of them, relative to its own size (to that of the system, if it should be zero).
+    /// Error of the worst pole, relative to its own magnitude (to the size of the system for a wanted pole of zero).
     pub error: f64,
-    /// Observability of the least observable mode, see [`observability`](crate::observability).
+    /// Observability of the least observable mode; see [`observability`](crate::observability).
     pub visibility: f64,
 }
 
@@ -41,28 +41,28 @@ pub struct PlacedPole {
 }
 
 impl<const N: usize, const P: usize> Placement<N, P> {
-    /// Number of the 16 digits of a double that the worst pole has lost, because the gain is rounded to doubles.
+    /// Number of the 16 digits of a double that the worst pole has lost because the gain is rounded to doubles.
     pub fn digits_lost(&self) -> f64 {
         libm::log10((self.error / f64::EPSILON).max(1.0))
     }
 }
 
-/// A pole that is off by more than this beside its size was not placed.
+/// Relative error above which a pole counts as not placed.
 const HOPELESS: f64 = 1e-2;
 
-/// Finds L such that A − L C has the wanted eigenvalues.
+/// Finds the gain L such that A − L C has the wanted eigenvalues.
 ///
-/// In continuous time give A and poles in 1/s, in discrete time the transition matrix and poles within the unit
-/// circle. With one output the gain is unique. With several there is freedom left, and it is used to make the
-/// poles insensitive: every eigenvector is turned, within what the outputs allow, as far as it goes from the
+/// For continuous time pass A and poles in 1/s, for discrete time the transition matrix and poles within the unit
+/// circle. With one output the gain is unique. With several, the remaining freedom is used to make the
+/// poles insensitive: every eigenvector is turned, within what the outputs allow, as far as possible from the
 /// others (Kautsky, Nichols & Van Dooren, "Robust pole assignment in linear state feedback", Int. J. Control 41
-/// (1985), method 0, extended to complex pairs). Poles may coincide with those of A, and with each other; one
-/// that is wanted more often than there are independent outputs is necessarily a sensitive one.
+/// (1985), method 0, extended to complex pairs). Poles may coincide with those of A, and with each other; a pole
+/// wanted more often than there are independent outputs is necessarily a sensitive one.
 ///
 /// # Errors
 /// [`Error::Unobservable`] with the mode that no output sees, [`Error::NotConjugate`], [`Error::NotFinite`],
-/// [`Error::NotConverged`], and [`Error::IllConditioned`] where rounding the gain to doubles moves a pole by
-/// more than a hundredth of itself.
+/// [`Error::NotConverged`], and [`Error::IllConditioned`] if rounding the gain to doubles moves a pole by
+/// more than a hundredth of its magnitude.
 pub fn place<const N: usize, const P: usize>(
     a: &SMatrix<f64, N, N>,
     c: &SMatrix<f64, P, N>,
@@ -99,8 +99,8 @@ pub fn place<const N: usize, const P: usize>(
 }
 
 impl<const N: usize, const P: usize> Problem<'_, N, P> {
-    /// Rounds a gain of the balanced pair and makes the best of the rounding. Where more poles coincide than there
-    /// are outputs they have no derivative, and the nearest gain is as good as any.
+    /// Rounds a gain of the balanced pair and improves the rounding. Where more poles coincide than there
+    /// are outputs, they have no derivative, and the nearest gain is kept.
     fn rounded(&self, gain: &Square<Extended, N>) -> Result<Checked<N, P>, Error> {
         let nearest = self.check(&round(&self.pair.gain(gain, self.merging)))?;
         if multiplicity(self.poles) > self.pair.rank {
@@ -110,8 +110,8 @@ impl<const N: usize, const P: usize> Problem<'_, N, P> {
         Ok(polished.filter(|polished| polished.error < nearest.error).unwrap_or(nearest))
     }
 
-    /// Poles wanted more often than there are outputs: a first gain makes all modes visible in one combination of
-    /// the outputs (Heymann 1968), which then places them.
+    /// Places poles that are wanted more often than there are outputs: a first gain makes all modes visible in one
+    /// combination of the outputs (Heymann 1968), through which they are then placed.
     fn through_one_output(&self) -> Result<Checked<N, P>, Error> {
         let mut best: Option<Checked<N, P>> = None;
         for attempt in 0..ATTEMPTS {
@@ -127,5 +127,5 @@ impl<const N: usize, const P: usize> Problem<'_, N, P> {
     }
 }
 
-/// Mixtures of outputs that are tried.
+/// Number of mixtures of outputs that are tried.
 const ATTEMPTS: u32 = 12;

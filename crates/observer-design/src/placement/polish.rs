@@ -1,7 +1,7 @@
-//! The best neighbour of a rounded gain.
+//! Search for the best neighbour of a rounded gain.
 //!
-//! Poles that lie close together depend on the last bit of every gain. There are more gains than poles, or at least
-//! as many: among the doubles around the exact gain some place the poles far better than the nearest ones.
+//! Poles that lie close together depend on the last bit of every gain. There are at least as many gains as poles, so
+//! among the doubles around the exact gain some place the poles far better than the nearest doubles do.
 
 use super::problem::{Checked, Problem};
 use crate::eigenvalues::eigenvector;
@@ -10,19 +10,19 @@ use crate::number::{Times, complex, extend, extend_complex, round_complex};
 use crate::sequence::Sequence;
 use nalgebra::{Complex, SMatrix, SVector};
 
-/// Relative error below which no pole is improved any more.
+/// Relative error below which poles are not improved further.
 const GOOD_ENOUGH: f64 = 4.0 * f64::EPSILON;
-/// Random neighbours that are tried, so many units in the last place away at most.
+/// Number of random neighbours that are tried, and their largest distance in units in the last place.
 const NEIGHBOURS: u32 = 400;
 const REACH: f64 = 6.0;
-/// Rounds over all gains in which each is improved by itself.
+/// Limit on the rounds over all gains, in each of which every gain is improved by itself.
 const ROUNDS: u32 = 6;
 
-/// By how much each pole moves, beside its size, when a gain moves by one unit in its last place.
+/// Motion of each pole, relative to its magnitude, when a gain moves by one unit in its last place.
 type Slopes<const N: usize, const P: usize> = SMatrix<SVector<Complex<f64>, N>, N, P>;
 
-/// A gain next to the checked one that places the poles better, as far as first derivatives tell; nothing where
-/// there is nothing to improve, or poles coincide and have no derivative.
+/// A gain next to the checked one that places the poles better according to first derivatives; `None` if
+/// nothing can be improved, or if poles coincide and have no derivative.
 pub(super) fn polish<const N: usize, const P: usize>(
     problem: &Problem<N, P>,
     checked: &Checked<N, P>,
@@ -52,7 +52,7 @@ pub(super) fn polish<const N: usize, const P: usize>(
     (moved != checked.gain).then_some(moved)
 }
 
-/// Moves one gain after the other by whole units to where the sum of squared offsets is least.
+/// Moves one gain after the other by whole units in the last place, to the smallest sum of squared offsets.
 fn improve<const N: usize, const P: usize>(
     slopes: &Slopes<N, P>,
     offsets: &mut SVector<Complex<f64>, N>,
@@ -81,12 +81,12 @@ fn worst<const N: usize>(offsets: &SVector<Complex<f64>, N>) -> f64 {
     offsets.iter().map(Complex::norm_sqr).fold(0.0, f64::max)
 }
 
-/// The distance from a number to the next double.
+/// The distance from the magnitude of a number to the next double.
 fn last_place(value: f64) -> f64 {
     f64::from_bits(value.abs().to_bits() + 1) - value.abs()
 }
 
-/// dλ = −y dL C x for left and right eigenvectors with y x = 1, on the balanced scale.
+/// The slopes dλ = −y dL C x, for left and right eigenvectors with y x = 1 on the balanced scale.
 fn slopes<const N: usize, const P: usize>(
     problem: &Problem<N, P>,
     checked: &Checked<N, P>,

@@ -1,4 +1,4 @@
-//! A system with the poles that are wanted of it, and how good a gain is at them.
+//! A system with its wanted poles, and the accuracy with which a gain places them.
 
 use crate::Error;
 use crate::eigenvalues::eigenvalues_extended;
@@ -8,21 +8,21 @@ use crate::pair::{Merging, Pair};
 use crate::poles::{is_nearly_zero, pair_up, size};
 use nalgebra::{Complex, SMatrix};
 
-/// A gain, and the poles that it gives.
+/// A gain and the poles that result from it.
 #[derive(Clone, Copy)]
 pub(super) struct Checked<const N: usize, const P: usize> {
     pub(super) gain: SMatrix<f64, N, P>,
-    /// In the order of the wanted ones.
+    /// Resulting poles, in the order of the wanted ones.
     pub(super) placed: [Complex<f64>; N],
-    /// By how much they are off.
+    /// Differences of the resulting poles from the wanted ones.
     pub(super) offsets: [Complex<f64>; N],
-    /// By how much the worst is off beside its size.
+    /// Error of the worst pole, relative to its magnitude.
     pub(super) error: f64,
-    /// The same, but of poles that are as good as zero beside the size of the system.
+    /// Error of the worst pole as `error`, but relative to the size of the system for poles that count as zero there.
     pub(super) loss: f64,
 }
 
-/// A system of which poles are wanted.
+/// A system and its wanted poles.
 pub(super) struct Problem<'a, const N: usize, const P: usize> {
     pub(super) a: &'a Square<f64, N>,
     pub(super) c: &'a SMatrix<f64, P, N>,
@@ -32,7 +32,7 @@ pub(super) struct Problem<'a, const N: usize, const P: usize> {
 }
 
 impl<const N: usize, const P: usize> Problem<'_, N, P> {
-    /// The poles that a gain places, and their errors.
+    /// Computes the poles that a gain places, and their errors.
     pub(super) fn check(&self, gain: &SMatrix<f64, N, P>) -> Result<Checked<N, P>, Error> {
         if !finite(gain) {
             return Err(Error::NotFinite);
@@ -70,7 +70,7 @@ impl<const N: usize, const P: usize> Problem<'_, N, P> {
         self.pair.balanced(&(extend(self.a) - extend(gain).times(&extend(self.c))))
     }
 
-    /// Size relative to which the error of a pole is measured: its own, or that of the system if it should be zero.
+    /// Size relative to which the error of a pole is measured: its magnitude, or the size of the system if it is zero.
     pub(super) fn reference(&self, pole: Complex<f64>) -> f64 {
         if size(pole) > 0.0 { size(pole) } else { self.system() }
     }

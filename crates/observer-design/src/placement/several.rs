@@ -1,4 +1,4 @@
-//! Several outputs: eigenvectors can be chosen.
+//! Placement with several outputs, where eigenvectors can be chosen.
 
 use crate::extended::Extended;
 use crate::number::{
@@ -14,13 +14,13 @@ use nalgebra::{Complex, SVector};
 type Wide = Complex<Extended>;
 type Narrow = Complex<f64>;
 
-/// Places from which the eigenvectors are turned, and how often each is.
+/// Number of random starts of the choice of eigenvectors, and limit on the sweeps over all vectors from each.
 const STARTS: u32 = 8;
 const SWEEPS: u32 = 24;
 
-/// A gain for the balanced pair, in its first columns. Real poles first, pairs side by side.
+/// A gain for the balanced pair, in the first columns. `poles` has the real ones first, and pairs side by side.
 ///
-/// Everything is done for the dual: F = Aᵀ and B = Sᵀ, where (F − λ) x = B g makes x an eigenvector of
+/// Computed for the dual, F = Aᵀ and B = Sᵀ: (F − λ) x = B g makes x an eigenvector of
 /// F − B K, with K = G X⁻¹.
 pub(crate) fn place<const N: usize>(
     pair: &Pair<N>,
@@ -36,7 +36,7 @@ pub(crate) fn place<const N: usize>(
     }
     let vectors = insensitive(&spaces, pair, poles)?;
 
-    // B = U R with the first columns of U: g = R⁻¹ Uᴴ (F − λ) x.
+    // With B = U R, where U is the first columns of `range`: g = R⁻¹ Uᴴ (F − λ) x.
     let mut triangle = adjoint(&range).times(&inputs);
     for index in pair.rank..N {
         triangle[(index, index)] = Wide::from(Extended::from(1.0));
@@ -55,11 +55,11 @@ pub(crate) fn place<const N: usize>(
         wanted.row_mut(row).fill(Wide::from(Extended::from(0.0)));
     }
     let directions = solve(&triangle, &wanted)?;
-    // K X = G, transposed: L = Kᵀ.
+    // K X = G, transposed, as L = Kᵀ.
     Some(solve(&exact.transpose(), &directions.transpose())?.map(|value| value.re))
 }
 
-/// The space from which an eigenvector can be chosen, in the first `rank` columns: what F − λ maps into the
+/// The space of admissible eigenvectors, in the first `rank` columns: the vectors that F − λ maps into the
 /// range of B.
 fn eigenvectors<const N: usize>(
     distance: &Square<Wide, N>,
@@ -81,7 +81,7 @@ fn eigenvectors<const N: usize>(
     Some(space)
 }
 
-/// One vector of each space, such that the poles are as insensitive as they get. Doubles suffice to choose.
+/// Chooses a vector of each space such that the poles are as insensitive as possible. Doubles suffice for the choice.
 fn insensitive<const N: usize>(
     spaces: &[Square<Wide, N>; N],
     pair: &Pair<N>,
@@ -94,7 +94,7 @@ fn insensitive<const N: usize>(
         let mut inverted = inverse(&vectors);
         for _ in 0..SWEEPS {
             let Some(current) = inverted else { break };
-            // By how much a change of A or L can move a pole.
+            // How far a change of A or L can move a pole.
             let sensitivity = norm(&current.transpose());
             if !sensitivity.is_finite() {
                 break;
@@ -109,7 +109,7 @@ fn insensitive<const N: usize>(
     best.map(|(_, vectors)| vectors)
 }
 
-/// Some vector of each space; real for a real pole, conjugate for conjugate ones.
+/// A random vector of each space; real for a real pole, conjugate for conjugate poles.
 fn anywhere<const N: usize>(
     spaces: &[Square<Narrow, N>; N],
     rank: usize,
@@ -130,8 +130,8 @@ fn anywhere<const N: usize>(
     Some(vectors)
 }
 
-/// Turns every vector, within its space, to where it is farthest from the plane of all others. Takes and answers
-/// with the inverse of the vectors.
+/// Turns every vector, within its space, as far as possible from the plane of all others. Takes and returns
+/// the inverse of the matrix of vectors.
 fn sweep<const N: usize>(
     vectors: &mut Square<Narrow, N>,
     mut inverted: Square<Narrow, N>,
@@ -150,7 +150,7 @@ fn sweep<const N: usize>(
     Some(inverted)
 }
 
-/// Does nothing for the second pole of a pair, as the first has set both vectors.
+/// Sets the vector of a pole, and its conjugate for a pair; does nothing for the second pole of a pair.
 fn set<const N: usize>(
     vectors: &mut Square<Narrow, N>,
     index: usize,
@@ -171,7 +171,7 @@ fn set<const N: usize>(
     }
 }
 
-/// Whether a pole is the second of a conjugate pair: at an odd place among the complex ones, which come last.
+/// Whether a pole is the second of a conjugate pair: at an odd position among the complex poles, which come last.
 fn is_second<const N: usize>(index: usize, poles: &[Narrow; N]) -> bool {
     poles.get(index).is_some_and(|pole| pole.im != 0.0)
         && poles.iter().take(index).filter(|pole| pole.im != 0.0).count() % 2 == 1

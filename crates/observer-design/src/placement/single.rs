@@ -1,4 +1,4 @@
-//! One output: the gain is unique.
+//! Placement with one output, where the gain is unique.
 
 use crate::extended::Extended;
 use crate::number::{Square, Times, norm};
@@ -8,7 +8,7 @@ use crate::sequence::Sequence;
 use kestirim_scalar::{Columns, Components};
 use nalgebra::{Complex, SVector};
 
-/// The gain of the first output of (A, S), in the first column.
+/// The gain from the first output of (A, S), in the first column.
 ///
 /// In an orthonormal basis of cᵀ, Aᵀ cᵀ, … (Arnoldi's), Aᵀ is a Hessenberg matrix H with subdiagonal h, cᵀ is
 /// β e₁, and the gain is the last row of φ(H) over β h₁ h₂ …, where φ is the wanted characteristic polynomial:
@@ -27,7 +27,7 @@ pub(crate) fn place<const N: usize>(
     for column in 0..N {
         basis.as_columns_mut()[column] = *direction.as_array();
         let mut vector = transposed.times(&direction);
-        // Twice, as once leaves rounding behind.
+        // Projected twice, because one projection leaves rounding behind.
         for _ in 0..2 {
             let parts = &mut hessenberg.as_columns_mut()[column];
             for (&base, sum) in basis.as_columns().iter().zip(parts).take(column + 1) {
@@ -51,7 +51,7 @@ pub(crate) fn place<const N: usize>(
     Some(gain)
 }
 
-/// The last row of φ(H), as a column. Poles come with their conjugates beside them.
+/// The last row of φ(H), as a column. Complex poles must have their conjugates next to them.
 fn last_row<const N: usize>(
     hessenberg: &Square<Extended, N>,
     poles: &[Complex<f64>; N],
@@ -83,8 +83,8 @@ fn last_row<const N: usize>(
     row
 }
 
-/// The gain of a pair with several outputs that works through a mixture of them: after a first gain, which makes
-/// the modes differ and all visible in the mixture.
+/// The gain of a pair with several outputs that acts through a mixture of them, after a first gain that makes
+/// the modes distinct and all visible in the mixture.
 pub(crate) fn through_a_mixture<const N: usize>(
     pair: &Pair<N>,
     poles: &[Complex<f64>; N],

@@ -5,7 +5,7 @@
 use kestirim_observer_design::{Complex, place};
 use nalgebra::SMatrix;
 
-/// The worst error of a pole, beside its size, when the dual system A = Fᵀ, C = Gᵀ is observed.
+/// The largest relative error of a pole when the dual system A = Fᵀ, C = Gᵀ is observed.
 fn worst<const N: usize, const P: usize>(
     f: [[f64; N]; N],
     g: [[f64; P]; N],

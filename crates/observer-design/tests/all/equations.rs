@@ -63,9 +63,9 @@ fn scalar(a: f64, c: f64, q: f64, r: f64) -> Result<f64, Error> {
 fn the_riccati_equation_has_its_stabilising_solution() {
     let golden = 0.5_f64.mul_add(5.0_f64.sqrt(), 0.5);
     assert!((scalar(1.0, 1.0, 1.0, 1.0).unwrap() - golden).abs() < 1e-15);
-    // Nothing drives what grows: it must be followed all the same.
+    // Nothing drives a growing mode, but it must be followed all the same.
     assert!((scalar(2.0, 1.0, 0.0, 1.0).unwrap() - 3.0).abs() < 1e-14);
-    // Nothing drives what decays: in the end it is known.
+    // Nothing drives a decaying mode, so in the end it is known.
     assert_eq!(scalar(0.5, 1.0, 0.0, 1.0), Ok(0.0));
     // No inverse of A is needed.
     let delays = riccati(
@@ -116,7 +116,7 @@ fn equations_without_a_steady_state_are_refused() {
 }
 
 proptest! {
-    /// P − F P Fᵀ = Q, whatever comes.
+    /// P − F P Fᵀ = Q for any F and Q.
     #[test]
     fn the_lyapunov_equation_holds(f in prop::array::uniform4(-0.5_f64..0.5), q in prop::array::uniform4(-1.0_f64..1.0)) {
         let f = Matrix2::from_row_slice(&f);
@@ -177,7 +177,7 @@ fn a_spring_answers_as_in_the_textbook() {
 fn singular_values_are_gains_in_the_best_and_the_worst_direction() {
     let i = Complex::new(0.0, 1.0);
     let one = Complex::from(1.0);
-    // A rotation, stretched: 3 and 1e-9.
+    // A rotation with different scales: 3 and 1e-9.
     let matrix = matrix![one * 3.0 * 0.6, i * 1e-9 * -0.8; i * 3.0 * 0.8, one * 1e-9 * -0.6];
     let [largest, least] = singular_values(&matrix);
     assert!(

@@ -1,4 +1,4 @@
-//! Poles come out where they were wanted.
+//! Placed poles are the wanted ones.
 
 use kestirim_observer_design::{
     Complex, Error, Placement, eigenvalues, hidden_modes, observability, place,
@@ -10,7 +10,7 @@ fn real<const N: usize>(poles: [f64; N]) -> [Complex<f64>; N] {
     poles.map(Complex::from)
 }
 
-/// The thesis-like aircraft in continuous time; x = [α, q, V, θ].
+/// An aircraft like that of the thesis, in continuous time; x = [α, q, V, θ].
 fn aircraft() -> Matrix4<f64> {
     matrix![
         -1.79, 1.0, -0.0076, -0.0171;
@@ -36,7 +36,7 @@ fn one_output_places_real_complex_and_repeated_poles() {
         place(&aircraft(), &theta, &[pair[1], Complex::from(-4.0), pair[0], Complex::from(-5.0)])
             .unwrap();
     assert!(placed.error < 1e-13, "{placed:?}");
-    // In the order in which they were wanted.
+    // The poles are in the order in which they were wanted.
     assert!((placed.poles[0].im + 3.0).abs() < 1e-10 && (placed.poles[2].im - 3.0).abs() < 1e-10);
 
     let placed = place(&aircraft(), &theta, &real([-4.0; 4])).unwrap();
@@ -112,9 +112,9 @@ fn a_hidden_mode_is_refused_by_name() {
     let poles = real([-5.0, -6.0, -7.0, -8.0]);
     let (re, im, state) = hidden(place(&diagonal, &RowVector4::new(1.0, 1.0, 0.0, 1.0), &poles));
     assert!((re + 3.0).abs() < 1e-12 && im < 1e-12 && state == 2);
-    // Even where it is wanted.
+    // The hidden mode is refused even where it is a wanted pole.
     hidden(place(&diagonal, &RowVector4::new(1.0, 1.0, 0.0, 1.0), &real([-5.0, -6.0, -3.0, -8.0])));
-    // Two modes that move alike cannot be told apart by one output.
+    // Two modes with the same eigenvalue cannot be told apart by one output.
     let twins = Matrix4::from_diagonal(&Vector4::new(-1.0, -2.0, -2.0, -4.0));
     let (re, ..) = hidden(place(&twins, &RowVector4::new(1.0, 1.0, 1.0, 1.0), &poles));
     assert!((re + 2.0).abs() < 1e-9);
@@ -128,7 +128,7 @@ fn a_hidden_mode_is_refused_by_name() {
 
 #[test]
 fn the_head_of_a_chain_is_missed_although_its_mode_is_double() {
-    // Turned, so that the entries are rounded and the double mode splits by 1e-8.
+    // Rotated, so that the entries are rounded and the double mode splits by 1e-8.
     let (cosine, sine) = (0.6, 0.8);
     let turn = matrix![cosine, -sine; sine, cosine];
     let a = turn * matrix![-2.0, 1.0; 0.0, -2.0] * turn.transpose();
@@ -155,7 +155,7 @@ fn what_cannot_be_placed_is_refused() {
     assert_eq!(place(&a, &c, &real([f64::NAN, -2.0])), Err(Error::NotFinite));
     assert_eq!(place(&a.map(|_| f64::NAN), &c, &real([-1.0, -2.0])), Err(Error::NotFinite));
     assert_eq!(place(&a, &matrix![f64::INFINITY, 0.0], &real([-1.0, -2.0])), Err(Error::NotFinite));
-    // A chain from 1 to 1e4 seen at its end: the gain would have to hold 20 digits.
+    // A chain from 1 to 1e4 measured at its end: the gain would need 20 digits.
     let chain = SMatrix::<f64, 5, 5>::from_fn(|row, column| match column.wrapping_sub(row) {
         0 => -(10.0_f64.powi(row as i32)),
         1 => 1.0,
@@ -167,7 +167,7 @@ fn what_cannot_be_placed_is_refused() {
 }
 
 proptest! {
-    /// Every pair that nature gives is placed, to nearly the last digit.
+    /// Every observable pair is placed, almost to the last digit.
     #[test]
     fn any_pair_with_two_outputs(
         a in prop::array::uniform16(-2.0_f64..2.0),
@@ -184,7 +184,7 @@ proptest! {
         prop_assert!(placed.error < 1e-12, "{}", placed.error);
     }
 
-    /// … and nothing, however odd, makes it panic.
+    /// No pair, however odd, makes placement panic.
     #[test]
     fn anything_is_answered(
         a in prop::array::uniform9(prop::num::f64::ANY),

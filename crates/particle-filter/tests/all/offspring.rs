@@ -1,4 +1,4 @@
-//! The laws of resampling: unbiased, within their bounds, and total on any weights.
+//! Properties of the resampling schemes: unbiased, within their bounds, and total for any weights.
 
 use kestirim_particle_filter::{
     Error, IntegerWeights, Multinomial, Resample, Resampler, Residual, Stratified, Systematic,
@@ -13,13 +13,13 @@ const LAWS: [Resampler; 4] =
 const N: usize = 100;
 const REPETITIONS: usize = 1000;
 
-/// Weights over three orders of magnitude.
+/// Weights that span three orders of magnitude.
 fn uneven() -> [f64; N] {
     let mut rng = Xoshiro128PlusPlus::seed_from_u64(3);
     [(); N].map(|()| (f64::from(rng.next_u32()) / 4_294_967_296.0).powi(3) + 1e-3)
 }
 
-/// For each weight, mean and variance of its number of offspring, and the number expected.
+/// Mean and variance of the number of offspring of each weight, and the expected number.
 fn statistics<T: Scalar>(law: Resampler) -> Result<Vec<[f64; 3]>, Error> {
     let weights = uneven().map(T::from_f64);
     let total: f64 = weights.iter().map(|weight| weight.to_f64()).sum();
@@ -46,21 +46,21 @@ fn check_unbiased<T: Scalar>() -> Result<(), Error> {
     let mut variances = Vec::new();
     for law in LAWS {
         let statistics = statistics::<T>(law)?;
-        // 10⁵ draws: χ² of 99 degrees of freedom is below 161 in 9999 cases of 10 000, and smaller
-        // still for laws of less variance.
+        // 10⁵ draws: χ² with 99 degrees of freedom is below 161 in 9999 cases of 10 000, and even smaller
+        // for schemes of smaller variance.
         let chi2: f64 = statistics
             .iter()
             .map(|[mean, _, expected]| REPETITIONS as f64 * (mean - expected).powi(2) / expected)
             .sum();
         assert!(chi2 < 161.0, "{law:?}: {chi2}");
         for [mean, variance, expected] in &statistics {
-            // Of a handful of draws the variance found says little, of none nothing: Poisson's then.
+            // For a few draws the sample variance means little, and for none nothing: Poisson's is used then.
             let error = (variance.max(expected.min(0.01)) / REPETITIONS as f64).sqrt();
             assert!((mean - expected).abs() < 4.5 * error, "{law:?}: {mean} for {expected}");
         }
         variances.push(statistics.iter().map(|[_, variance, _]| variance).sum::<f64>());
     }
-    // That of a multinomial count is N·w·(1 − w).
+    // The variance of a multinomial count is N·w·(1 − w).
     let total: f64 = uneven().iter().sum();
     let theory: f64 = uneven().iter().map(|w| N as f64 * w / total * (1.0 - w / total)).sum();
     assert!((variances[0] / theory - 1.0).abs() < 0.05, "{} {theory}", variances[0]);
@@ -84,7 +84,7 @@ fn drawn(law: impl Resample) -> Result<[u32; N], Error> {
     Ok(counts)
 }
 
-/// A user's own law: all offspring are the first particle's.
+/// A user-defined scheme: all offspring are those of the first particle.
 struct First;
 
 impl Resample for First {
@@ -108,8 +108,8 @@ fn laws_are_types_too_and_a_users_own_is_asked() -> Result<(), Error> {
 
 #[test]
 fn independent_draws_are_independent() -> Result<(), Error> {
-    // The joint law: the numbers that fall to the first half of equal weights are binomial, of variance n/4,
-    // and neighbours are anticorrelated by 1/n only.
+    // The joint distribution: the counts in the first half of equal weights are binomial with variance n/4,
+    // and neighbours are anticorrelated only by 1/n.
     let weights = [1.0_f32; 300];
     let mut counts = [0; 300];
     let mut rng = Xoshiro128PlusPlus::seed_from_u64(5);
@@ -138,7 +138,7 @@ fn check_bounds<T: Scalar>(weights: &[T], seed: u64) -> Result<(), TestCaseError
         for (&count, weight) in counts.iter().zip(weights) {
             let expected = weights.len() as f64 * (weight.to_f64() / largest) / total;
             let count = f64::from(count);
-            // Weights are rounded to 2⁻³¹ of the largest, in single precision to its own last bit.
+            // Weights are rounded to 2⁻³¹ of the largest, in single precision to their own last bit.
             let rounding = 1e-4;
             match law {
                 Resampler::Systematic => prop_assert!((count - expected).abs() < 1.0 + rounding),
@@ -180,7 +180,7 @@ fn pathological_weights() -> Result<(), Error> {
             offspring(law, &[0.0, tiny, 0.0, 0.0, 0.0], &mut counts, &mut rng)?;
             assert_eq!(counts, [0, 5, 0, 0, 0], "{law:?} {tiny}");
         }
-        // The last, where a cumulative sum of floats ends before one.
+        // The last weight, where a cumulative sum of floats would end before one.
         offspring(law, &[0.0, 0.0, 0.0, 0.0, 1e-38_f32], &mut counts, &mut rng)?;
         assert_eq!(counts, [0, 0, 0, 0, 5]);
         let mut one = [0];
@@ -220,7 +220,7 @@ fn a_hundred_thousand_weights() -> Result<(), Error> {
     Ok(())
 }
 
-/// A generator that gives nothing but one number.
+/// A random number generator that always returns the same number.
 struct Stuck(u32);
 
 impl rand_core::TryRng for Stuck {

@@ -1,4 +1,4 @@
-//! The cloud: weights that never underflow, moments, motion, recovery.
+//! The cloud of particles: weights that never underflow, moments, motion, recovery.
 
 use kestirim_particle_filter::{
     Error, Particles, Region, Resampler, Start, Xoshiro128PlusPlus, kld_count,
@@ -14,7 +14,8 @@ fn square<T: Scalar>(side: f64) -> Result<Region<T, 2>, Error> {
     Region::new([T::ZERO; 2], [T::from_f64(side); 2])
 }
 
-/// ln of a normal density about a point, without its constant; distances are kept where a square is a number.
+/// Logarithm of a normal density about a point, without its constant; distances are limited so that squares do not
+/// overflow.
 fn bell<T: Scalar>(state: [T; 2], centre: [f64; 2], sigma: f64) -> T {
     let sigmas = [0, 1].map(|axis| {
         let distance: T = (state[axis] - T::from_f64(centre[axis])) / T::from_f64(sigma);
@@ -73,7 +74,7 @@ fn weights_survive_many_updates<T: Scalar>() -> Result<(), Error> {
     let mut particles =
         Particles::<T, 1, 50>::new(Start::Lattice, &Region::new([T::ZERO], [T::ONE])?, &mut rng(3));
     for _ in 0..100_000 {
-        // Every likelihood is below e⁻⁴⁰; the last particle's is e^(1/100) better than the first's.
+        // Every likelihood is below e⁻⁴⁰; that of the last particle is e^(1/100) times that of the first.
         particles.update(|[x]| T::from_f64(-41.0) + x * T::from_f64(0.01))?;
     }
     let largest = particles.log_weights().iter().fold(T::MIN, |largest, &w| largest.max(w));
@@ -101,7 +102,7 @@ fn leaves_the_set_as_it_was<T: Scalar>() -> Result<(), Error> {
         assert_eq!(particles.update(|_| impossible), Err(Error::Degenerate));
         assert_eq!(format!("{particles:?}"), before);
     }
-    // One particle, however late, saves the others from being lost: they have no weight then.
+    // One particle with a likelihood, however late, suffices: the others have no weight then.
     let last = particles.state(99).ok_or(Error::TooMany)?;
     particles.update(|state| if state == last { T::ZERO } else { T::from_f64(f64::NAN) })?;
     assert_eq!(particles.effective(), T::ONE);
@@ -110,7 +111,7 @@ fn leaves_the_set_as_it_was<T: Scalar>() -> Result<(), Error> {
     assert_eq!(particles.weight(100), None);
     let mean = particles.moments().mean();
     assert!((mean[0] - last[0]).abs().to_f64() < 1e-3 && (mean[1] - last[1]).abs().to_f64() < 1e-3);
-    // And recovery by request.
+    // Recovery is on request.
     particles.spread(Start::QuasiRandom, &square(100.0)?, &mut rng(5));
     assert!((particles.effective().to_f64() - 100.0).abs() < 0.01);
     Ok(())
@@ -125,7 +126,7 @@ fn a_measurement_that_nothing_explains_changes_nothing() -> Result<(), Error> {
 
 #[test]
 fn evidence_is_that_of_the_data() -> Result<(), Error> {
-    // Uniform prior on 0..100, normal likelihood of σ = 2 well inside: ∫ exp(…)/100 = σ·√(2π)/100.
+    // A uniform prior on 0..100 and a normal likelihood of σ = 2 well inside: ∫ exp(…)/100 = σ·√(2π)/100.
     let region = Region::new([0.0], [100.0])?;
     let mut particles = Particles::<f64, 1, 2000>::new(Start::Lattice, &region, &mut rng(6));
     let update = particles.update(|[x]| -((x - 43.0_f64) / 2.0).powi(2) / 2.0)?;
@@ -148,7 +149,7 @@ fn resampling_keeps_the_mean<T: Scalar>() -> Result<(), Error> {
             assert!((particles.effective().to_f64() / count as f64 - 1.0).abs() < 1e-3);
         }
         let after = particles.moments();
-        // Ten particles stood for all in between.
+        // In between, as few as ten particles stood for all.
         let tolerance = 3.0 * 8.0 / effective.min(10.0).sqrt();
         for axis in 0..2 {
             let shift = (after.mean()[axis] - before.mean()[axis]).to_f64().abs();
@@ -171,7 +172,7 @@ fn resampling_keeps_the_mean_whatever_the_number() -> Result<(), Error> {
 fn offspring_are_copies_of_their_parents_in_the_right_number() -> Result<(), Error> {
     let region = Region::new([0.0], [8.0])?;
     let mut particles = Particles::<f64, 1, 8>::new(Start::Lattice, &region, &mut rng(9));
-    // Weights 1, 2, 1, 0, 4, 0, 0, 0 eighths.
+    // The weights are 1, 2, 1, 0, 4, 0, 0, 0 eighths.
     let weights = [1.0_f64, 2.0, 1.0, 0.0, 4.0, 0.0, 0.0, 0.0];
     particles.update(|[x]| weights[x as usize].ln())?;
     particles.resample(Resampler::Systematic, &mut rng(10))?;
@@ -187,7 +188,7 @@ fn jitter_and_kernel<T: Scalar>() -> Result<(), Error> {
     let moments = particles.moments();
     let [x, y] = moments.deviation().map(T::to_f64);
     assert!((x / 10.0 - 1.0).abs() < 0.05 && (y - 1.0).abs() < 0.05, "{x} {y}");
-    // Correlated now: the kernel must follow.
+    // The coordinates are correlated now, and the kernel must follow.
     particles.predict(|[x, y], []| [x, y + x * T::HALF], &mut rng(12));
     let before = particles.moments();
     particles.resample(Resampler::Systematic, &mut rng(13))?;
@@ -221,7 +222,7 @@ fn metropolis_finds_the_posterior<T: Scalar>() -> Result<(), Error> {
     for _ in 0..10 {
         taken += particles.metropolis(T::from_f64(1.7), posterior, &mut rng)?;
     }
-    // Of ten rounds of 500, 30 to 60 % are taken.
+    // Of ten rounds of 500 moves, 30 to 60 % are accepted.
     assert!((1500..3000).contains(&taken), "{taken}");
     let moments = particles.moments();
     let [x, y] = moments.deviation().map(T::to_f64);
@@ -265,7 +266,7 @@ fn a_posterior_of_two_peaks_has_its_mode_at_the_higher() -> Result<(), Error> {
 
 #[test]
 fn fewer_bins_want_fewer_particles() -> Result<(), Error> {
-    // Fox's table: 50 bins, ε = 0.05, 99 %: (k − 1)/(2ε)·(1 − 2/(9(k − 1)) + √(2/(9(k − 1)))·2.326)³.
+    // Fox's formula for 50 bins, ε = 0.05, 99 %: (k − 1)/(2ε)·(1 − 2/(9(k − 1)) + √(2/(9(k − 1)))·2.326)³.
     assert_eq!(kld_count(50, 0.05, 2.326, 100_000)?, 749);
     assert_eq!(kld_count(50, 0.05_f32, 2.326, 500)?, 500);
     assert_eq!(kld_count(1, 0.05, 2.326, 500)?, 1);

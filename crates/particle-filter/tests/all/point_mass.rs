@@ -1,4 +1,4 @@
-//! The point-mass filter against integrals.
+//! The point-mass filter compared with integrals.
 
 use kestirim_particle_filter::{Error, PointMass, Region};
 use kestirim_scalar::{Q16_16, Scalar};
@@ -17,7 +17,7 @@ fn check<T: Scalar>(tolerance: f64) -> Result<(), Error> {
     let (centre, sigma) = ([13.7, -21.3], [3.0, 5.0]);
     let posterior = |point| bell::<T>(point, centre, sigma);
     filter.update(posterior)?;
-    // Two refinements, from a cell wider than the posterior.
+    // Two refinements, starting from a cell wider than the posterior.
     for _ in 0..2 {
         let Some(finer) = filter.finer(T::from_f64(12.0)) else { break };
         filter = finer;
@@ -29,7 +29,8 @@ fn check<T: Scalar>(tolerance: f64) -> Result<(), Error> {
         assert!((moments.deviation()[axis].to_f64() / sigma[axis] - 1.0).abs() < tolerance);
     }
     assert!(filter.effective().to_f64() > 20.0);
-    // The density at the border of a normal distribution's 90 % region is a tenth of the largest.
+    // The density at the border of the 90 % region of a normal distribution in the plane is a tenth
+    // of the largest.
     let level = filter.density_level(T::from_f64(0.9)).to_f64();
     assert!((level - 0.1_f64.ln()).abs() < 0.15, "{level}");
     Ok(())

@@ -1,4 +1,4 @@
-//! What standstills teach, and what teaches nothing.
+//! Tests of what is learnt from standstills, and of motions from which nothing is learnt.
 
 extern crate std;
 
@@ -9,7 +9,7 @@ use std::vec::Vec;
 const BIAS: [f64; 3] = [0.02, -0.03, 0.05];
 const GRAVITY: [f64; 3] = [0.0, 0.6, 0.8];
 
-/// An alignment that is shown samples a hundredth of a second apart.
+/// An alignment that processes samples a hundredth of a second apart.
 struct Shown {
     alignment: Alignment<f64>,
     time_us: u64,
@@ -17,11 +17,11 @@ struct Shown {
 
 impl Shown {
     fn new(sensor: SensorClass) -> Self {
-        // The lower half of the clock goes round.
+        // The lower half of the clock wraps round.
         Self { alignment: Alignment::new(sensor), time_us: u64::from(u32::MAX) - 200_000 }
     }
 
-    /// So many samples of this rate (rad/s) and force (g); the magnitudes that standstills showed.
+    /// Processes `count` samples of a rate (rad/s) and a force (g); returns the magnitudes that standstills showed.
     fn on(
         &mut self,
         samples: u32,
@@ -58,7 +58,7 @@ fn a_standstill_takes_half_a_second_and_shows_the_bias() {
     assert!(magnitudes.len() == 1 && (magnitudes[0] - 1.0).abs() < 1e-9, "{magnitudes:?}");
     assert!(shown.bias_off() < 1e-5, "{:?}", shown.alignment);
     assert!(shown.alignment.accelerometer_bias().norm() < 1e-6);
-    // Each half second is another.
+    // Each half second is another standstill.
     assert_eq!(shown.on(52 * 3, still).len(), 3);
 }
 
@@ -66,7 +66,7 @@ fn a_standstill_takes_half_a_second_and_shows_the_bias() {
 fn a_good_gyroscope_is_believed_beside_a_short_standstill() {
     let mut shown = Shown::new(SensorClass::Industrial);
     shown.on(53, still);
-    // Its deviation of 0.3 against the standstill's of 0.07: P/(P + R) of the way.
+    // Its standard deviation of 0.3 against that of the standstill, 0.07: a gain of P/(P + R).
     let gain = |p: f64| p / (p + 0.07 * 0.07);
     let first = gain(0.3 * 0.3 + 1e-4);
     let total = Vector3::from(BIAS).norm();
@@ -85,7 +85,7 @@ fn what_moves_is_no_standstill() {
         vector
     };
     for axis in 0..3 {
-        // Each eighth of a second another rate, another force; or a rate that is no bias.
+        // Another rate or force in each eighth of a second; or a rate that no bias explains.
         let steps =
             |size: f64| move |k: u32| if k.saturating_sub(1) / 13 % 2 == 1 { size } else { 0.0 };
         let turns = |size: f64| {
@@ -132,14 +132,15 @@ fn an_accelerometer_bias_is_what_is_beyond_gravity_along_it() {
     let expected = Vector3::from(GRAVITY) * (0.03 * STANDARD_GRAVITY);
     let found = *shown.alignment.accelerometer_bias();
     assert!((found - expected).norm() < 1e-3 * expected.norm(), "{found} {expected}");
-    // Of a first standstill nearly all, as 5 % is what a bare chip may be off by, and a thousandth a standstill.
+    // A first standstill is believed almost completely, as a bare chip may be off by 5 %, and a standstill by a
+    // thousandth.
     let mut shown = Shown::new(SensorClass::Consumer);
     shown.on(60, |_| (BIAS.into(), Vector3::from(GRAVITY) * 1.03));
     let share = shown.alignment.accelerometer_bias().norm() / expected.norm();
     assert!((share - 0.0025 / (0.0025 + 1e-6)).abs() < 1e-6, "{share}");
 }
 
-/// A person who sways by so much (rad/s) in steps of an eighth of a second, about a mean of half of that.
+/// A person who sways by `by` (rad/s) in steps of an eighth of a second, about a mean of half of that.
 fn swayed(by: f64, sensor: SensorClass) -> Shown {
     swayed_beside(Shown::new(sensor), by)
 }
@@ -156,14 +157,14 @@ fn swayed_beside(mut shown: Shown, by: f64) -> Shown {
 fn a_sway_is_no_bias_to_a_gyroscope_of_which_nothing_is_known() {
     let unknown = swayed(0.025, SensorClass::Consumer);
     assert_eq!(*unknown.alignment.gyro_bias(), Vector3::zeros());
-    // To a good one it is worth what its spread leaves.
+    // For a good sensor it has the weight that its spread leaves.
     let good = swayed(0.025, SensorClass::Industrial);
     let bias = good.alignment.gyro_bias().x;
-    // Four means of 0 and 0.025 rad/s: theirs has the deviation of one over √4.
+    // Four means of 0 and 0.025 rad/s: their mean has the standard deviation of one over √4.
     let deviation = 0.025 / 3_f64.sqrt() / 2.0;
     let (p, noise) = (0.3 * 0.3 + 1e-4, 1e4 * deviation * deviation + 0.07 * 0.07);
     assert!((bias - 0.0125 * p / (p + noise)).abs() < 1e-6, "{bias}");
-    // One that may be off by a hundredth of a radian a second and more is not known.
+    // A bias that may be off by a hundredth of a radian per second or more is unknown.
     for (sigma, learns) in [(0.99, true), (1.01, false)] {
         let mut shown = Shown::new(SensorClass::Consumer);
         shown.alignment.bias_variance = sigma * sigma;
@@ -204,7 +205,7 @@ fn a_force_is_the_mean_of_its_eighths_and_gravity_that_of_all_standstills() {
     assert!(told.len() == 1 && (told[0] - 1.03).abs() < 1e-9, "{told:?}");
     let bias = |shown: &Shown| shown.alignment.accelerometer_bias().norm() / STANDARD_GRAVITY;
     assert!((bias(&shown) - 0.03).abs() < 1e-4, "{}", bias(&shown));
-    // A second one at 1 g counts as much, and a third.
+    // A second standstill at 1 g has the same weight, and a third.
     for expected in [0.015, 0.01] {
         shown.on(52, still);
         assert!((bias(&shown) - expected).abs() < 1e-4, "{}", bias(&shown));

@@ -1,4 +1,4 @@
-//! Plateaus that are ends of a range, and those that are none.
+//! Tests with plateaus that are ends of a range, and with others that are not.
 
 extern crate std;
 
@@ -6,7 +6,7 @@ use super::*;
 use nalgebra::Vector3;
 use std::vec::Vec;
 
-/// A swing as a clipped gyroscope shows it: it rises by as much from sample to sample, stays, and falls.
+/// A swing as measured by a clipped gyroscope: it rises evenly from sample to sample, stays, and falls.
 #[derive(Clone, Copy)]
 struct Swing {
     axis: usize,
@@ -15,7 +15,7 @@ struct Swing {
     rising: f64,
     falling: f64,
     plateau: usize,
-    /// s.
+    /// The sampling interval (s).
     interval: f64,
 }
 
@@ -63,7 +63,7 @@ impl Stream {
         self.clipping.remember(&rate);
     }
 
-    /// How many turns a swing was found to have missed.
+    /// The number of missed turns that were found in a swing.
     fn swing(&mut self, swing: Swing) -> usize {
         let before = self.missed.len();
         for rate in swing.rates() {
@@ -79,7 +79,7 @@ impl Stream {
     }
 }
 
-/// From which of six swings on a turn is missed.
+/// The first of six swings in which a missed turn is found.
 fn told_from(swing: Swing) -> Option<usize> {
     let missed = Stream::new().swings::<6>(swing);
     let first = missed.iter().position(|&missed| missed > 0);
@@ -91,19 +91,19 @@ fn told_from(swing: Swing) -> Option<usize> {
 fn sharp_plateaus_are_told_from_the_second_on_and_others_from_the_fourth() {
     assert_eq!(told_from(SHARP), Some(1));
     for weaker in [
-        // Samples that are farther apart.
+        // Samples farther apart.
         Swing { interval: 0.01, ..SHARP },
-        // Longer than a foot's swing bends in.
+        // Longer than the time within which a foot's swing bends.
         Swing { plateau: 14, ..SHARP },
-        // It would have risen by a tenth of itself.
+        // It would have risen by a tenth of its level.
         Swing { rising: 0.9, falling: 0.9, ..SHARP },
     ] {
         assert_eq!(told_from(weaker), Some(3));
     }
     assert_eq!(told_from(Swing { plateau: 12, interval: 0.0049, ..SHARP }), Some(1));
-    // Of the first swing less is seen, while the level is still learnt.
+    // The first swing counts less, while the level is still learnt.
     assert_eq!(told_from(Swing { rising: 1.1, falling: 1.1, ..SHARP }), Some(2));
-    // Two samples are a sharp plateau if they are close to each other; what is round or slow is none.
+    // Two samples are a sharp plateau if they are close together; a round or slow one is none.
     assert_eq!(told_from(Swing { plateau: 2, ..SHARP }), Some(2));
     assert_eq!(told_from(Swing { plateau: 2, interval: 0.01, ..SHARP }), None);
     assert_eq!(told_from(Swing { rising: 0.49, falling: 0.49, ..SHARP }), None);
@@ -143,7 +143,7 @@ fn a_long_plateau_is_no_higher_than_one_of_a_twelfth_of_a_second() {
     let found = stream.missed[0].turn.norm();
     let expected = long.angle() * 0.08 / (40.0 * 0.005);
     assert!((found - expected).abs() < 1e-9, "{found} {expected}");
-    // A third of a second is a sensor that is stuck.
+    // A third of a second indicates a stuck sensor.
     assert_eq!(told_from(Swing { plateau: 59, ..SHARP }), Some(3));
     assert_eq!(told_from(Swing { plateau: 61, ..SHARP }), None);
 }
@@ -171,7 +171,7 @@ fn a_level_that_grows_by_more_than_a_fiftieth_was_none() {
     };
     assert_eq!(grown(1.019), [1, 1]);
     assert_eq!(grown(1.021), [0, 1]);
-    // Within as much below it is still near.
+    // A rate slightly below the level is still near it.
     assert_eq!(grown(0.981), [1, 1]);
     assert_eq!(grown(0.979), [0, 0]);
 }
@@ -201,7 +201,7 @@ fn a_missed_turn_stands_as_the_body_does_now_and_comes_with_the_pushes_since() {
     for rate in SHARP.rates().take(3 + 4 + 2) {
         let rate = Vector3::new(0.0, rate, 3.0);
         stream.step(rate, 0.005, pushed);
-        // From its middle on: half of the plateau, and the two samples after it that show how it falls.
+        // From the middle on: half of the plateau, and the two samples after it that show how it falls.
         after += u32::from(rate.y == SHARP.level || after >= 4);
         let share = match after {
             0 => 0.0,
@@ -243,7 +243,7 @@ fn what_is_forgotten_is_not_judged_and_what_is_rewound_keeps_its_ends() {
     stream.clipping = stream.clipping.rewound();
     assert!(!stream.clipping.concerns(&Vector3::zeros(), false), "nothing is open");
     assert_eq!(stream.swing(SHARP), 1, "the end is known");
-    // One that was not sure is to be found once more.
+    // An uncertain end has to be found again.
     let mut unsure = Stream::new();
     unsure.swing(SHARP);
     unsure.clipping = unsure.clipping.rewound();

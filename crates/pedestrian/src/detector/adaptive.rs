@@ -3,9 +3,9 @@ use kestirim_scalar::Scalar;
 
 /// The default detector: SHOE without a threshold to choose.
 ///
-/// Every stride has a stance, so the smallest T of the last 1.4 s was one, whoever walks: the foot
-/// stands where T < max(T₀, 2·min T), with a smaller T₀ for who walks slowly. Where no stance comes for a while, the walker
-/// has begun to run or the minimum was a standstill's, and the bound grows with the time since.
+/// Every stride has a stance, so the smallest T of the last 1.4 s belongs to one, for any walker: the foot stands where
+/// T < max(T₀, 2·min T), with a smaller T₀ for slow walkers. If no stance is found for a while, the walker has begun to
+/// run or the minimum was that of a standstill, and the bound grows with the time since.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -34,15 +34,15 @@ impl<T: Scalar> Default for Adaptive<T> {
 }
 
 impl<T: Scalar> Adaptive<T> {
-    /// 1.4 s, longer than a slow stride.
+    /// The memory of the minimum, in bins: 1.4 s, longer than a slow stride.
     const MEMORY_BINS: usize = 14;
-    /// Threshold as a multiple of the smallest T; any value from 1.5 to 3 finds the same strides.
+    /// The threshold as a multiple of the smallest T; any value from 1.5 to 3 finds the same strides.
     const FACTOR: f64 = 2.0;
-    /// T₀, (rad/s)²: below 0.3 rad/s a usual walker's foot always stands.
+    /// T₀, (rad/s)²: below 0.3 rad/s the foot of a usual walker always stands.
     const FLOOR: f64 = 0.1;
-    /// The bound begins to grow this long after a stance (µs), threefold a second …
+    /// The time after a stance at which the bound begins to grow (µs), by three times its value per second.
     const PATIENCE_US: u32 = 500_000;
-    /// … and time since then is counted no further than this (µs).
+    /// The longest time for which the bound grows (µs).
     const IMPATIENCE_US: u32 = 10_000_000;
 }
 
@@ -68,7 +68,7 @@ impl<T: Scalar> StanceDetector<T> for Adaptive<T> {
     }
 }
 
-/// Largest number of bins.
+/// The largest number of bins.
 const CAPACITY: usize = 16;
 
 /// The smallest value of the recent past, in bins of a tenth of a second.
@@ -82,7 +82,7 @@ pub(crate) struct RecentMinimum<T> {
     )]
     newest: usize,
     begun_us: Option<u32>,
-    /// The smallest of all bins but the newest.
+    /// The smallest value of all bins except the newest.
     older: T,
     #[cfg_attr(
         feature = "serde",
@@ -92,12 +92,12 @@ pub(crate) struct RecentMinimum<T> {
 }
 
 impl<T> RecentMinimum<T> {
-    /// A bin's length (µs).
+    /// The length of a bin (µs).
     pub(crate) const BIN_US: u32 = 100_000;
 }
 
 impl<T: Scalar> RecentMinimum<T> {
-    /// Keeps `memory` bins and the one being filled; at most 15.
+    /// Creates a memory of `memory` bins, at most 15, besides the one being filled.
     pub(crate) fn new(memory: usize) -> Self {
         Self {
             bins: [T::MAX; CAPACITY],
@@ -108,7 +108,7 @@ impl<T: Scalar> RecentMinimum<T> {
         }
     }
 
-    /// Takes the value at `time_us` and returns the smallest that is kept.
+    /// Adds the value at `time_us` and returns the smallest that is kept.
     #[inline]
     pub(crate) fn push(&mut self, time_us: u32, value: T) -> T {
         let begun_us = *self.begun_us.get_or_insert(time_us);
@@ -126,10 +126,10 @@ impl<T: Scalar> RecentMinimum<T> {
         self.bins[self.newest % CAPACITY].min(self.older)
     }
 
-    /// Begins the bin that `time_us` is in; those passed over stay empty.
+    /// Begins the bin that contains `time_us`; skipped bins stay empty.
     #[inline(never)]
     fn next_bin(&mut self, mut begun_us: u32, time_us: u32) {
-        // A long gap empties every bin; there is no need to pass more of them.
+        // A long gap empties every bin, and no more than these need to be passed.
         for _ in 0..CAPACITY {
             self.newest = (self.newest + 1) % CAPACITY;
             self.bins[self.newest] = T::MAX;
@@ -165,7 +165,7 @@ mod tests {
                 forgotten = forgotten.or(Some(time_us));
             }
         }
-        // With the bin that is being filled: when the sixth begins after that of the value.
+        // Including the bin being filled: a value is forgotten when the sixth bin after its own begins.
         assert_eq!(forgotten, Some(1_000 + 6 * BIN_US));
         assert_eq!(minimum.smallest(), 5.0);
         assert_eq!(minimum.push(2_000_000, 0.5), 0.5);
@@ -180,7 +180,7 @@ mod tests {
             let found = minimum.push((u32::MAX - 50_000).wrapping_add(gap_us), 5.0);
             assert_eq!(found == 1.0, kept, "{gap_us} µs");
         }
-        // A long one empties all, and the next bin begins at its end.
+        // A long gap empties all bins, and the next bin begins at its end.
         let mut minimum = RecentMinimum::new(15);
         minimum.push(0, 1.0);
         assert_eq!(minimum.push(3_600_000_000, 5.0), 5.0);
@@ -189,7 +189,7 @@ mod tests {
         assert_eq!(minimum.push(3_600_000_000 + 16 * BIN_US, 9.0), 9.0);
     }
 
-    /// A foot that turns at this rate (rad/s), after so long a time (µs).
+    /// Processes a foot that turns at this rate (rad/s) at a time (µs).
     fn turning(detector: &mut Adaptive<f64>, time_us: u32, rate: f64) -> bool {
         let force_g = SVector::from([0.0, 0.0, 1.0]);
         let angular_rate = SVector::from([rate, 0.0, 0.0]);
@@ -201,16 +201,16 @@ mod tests {
         for (waited, grown) in [(0.3, 1.0), (0.5, 1.0), (1.5, 4.0), (2.5, 7.0), (60.0, 31.0)] {
             for (share, stands) in [(0.97, true), (1.03, false)] {
                 let mut detector = Adaptive::default();
-                // It turned by a rate whose square is 1 and never less …
+                // The squared rate is 1 and never less.
                 for k in 0..20 {
                     turning(&mut detector, k * 10_000, 1.0);
                 }
-                // … was lost from sight, with a stance just before …
+                // Then it is unseen for a while, with a stance just before the end.
                 detector.last_stance_us = Some(190_000);
                 let time_us = 190_000 + (waited * 1e6) as u32;
                 detector.minimum = RecentMinimum::new(Adaptive::<f64>::MEMORY_BINS);
                 detector.minimum.push(time_us, 0.5);
-                // … and turns by more: twice the smallest is the bound.
+                // Then it turns faster: twice the smallest is the bound.
                 let rate = (grown * share).sqrt();
                 assert_eq!(turning(&mut detector, time_us, rate), stands, "{waited} s, {share}");
             }

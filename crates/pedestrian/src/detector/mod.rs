@@ -1,4 +1,4 @@
-//! Detectors of stance behind one trait, each O(1) a sample in fixed memory.
+//! Stance detectors behind one trait, each O(1) per sample in fixed memory.
 
 mod adaptive;
 mod shoe;
@@ -15,30 +15,30 @@ pub(crate) use swing_level::SwingLevel;
 use kestirim_scalar::Scalar;
 use nalgebra::SVector;
 
-/// Input of a detector: a sample without its biases, in units in which everyday values are about one.
+/// The input of a detector: a sample without its biases, in units in which ordinary values are about one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<T: Scalar> {
-    /// Time (µs; wraps every 71 minutes).
+    /// The time (µs; wraps every 71 minutes).
     pub time_us: u32,
-    /// Specific force without its bias, in units of standard gravity (body).
+    /// The specific force without its bias, in units of standard gravity (body).
     pub force_g: SVector<T, 3>,
-    /// Angular rate (rad/s, body).
+    /// The angular rate (rad/s, body).
     pub angular_rate: SVector<T, 3>,
 }
 
-/// Decision of a detector about the newest sample.
+/// The decision of a detector about the newest sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Verdict<T> {
-    /// The foot stands.
+    /// Whether the foot stands.
     pub stance: bool,
-    /// The SHOE statistic T, (rad/s)²: small for a foot at rest; 0 from a detector without a statistic.
-    /// A zero-velocity update weighs the more the smaller it is.
+    /// The SHOE statistic T, (rad/s)²: small for a foot at rest; 0 from a detector without a statistic. The smaller it
+    /// is, the more a zero-velocity update weighs.
     pub statistic: T,
 }
 
-/// Tells stance from swing, causally.
+/// A causal detector that distinguishes stance from swing.
 pub trait StanceDetector<T: Scalar> {
-    /// Takes the next sample, whose time is not before the last one's.
+    /// Processes the next sample, whose time must not precede that of the last one.
     fn update(&mut self, motion: &Motion<T>) -> Verdict<T>;
 }

@@ -4,8 +4,8 @@ use kestirim_scalar::{Components, Scalar};
 
 /// The statistic of the stance hypothesis optimal estimator (Skog et al., IEEE TBME 2010, eq. 14) over 50 ms.
 ///
-/// T = mean |ω|² + κ·mean |f − f̄/|f̄||², with f in units of g: how far the last 50 ms are from a foot that
-/// does not turn and feels gravity alone. Its unit is (rad/s)²; κ = 2.9 (rad/s)² weighs 0.1 g like 0.17 rad/s.
+/// T = mean |ω|² + κ·mean |f − f̄/|f̄||², with f in units of g: the deviation of the last 50 ms from a foot that does
+/// not turn and senses only gravity. Its unit is (rad/s)²; κ = 2.9 (rad/s)² weighs 0.1 g like 0.17 rad/s.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -26,14 +26,14 @@ impl<T: Scalar> Default for Shoe<T> {
 }
 
 impl<T: Scalar> Shoe<T> {
-    /// The window (µs). 30 to 100 ms give the same walks; stances of running last 100 ms.
+    /// The length of the window (µs): 30 to 100 ms give the same walks; stances in running last 100 ms.
     pub(crate) const WINDOW_US: u32 = 47_500;
-    /// κ, (rad/s)² per g².
+    /// The weight κ of the force, (rad/s)² per g².
     const FORCE_WEIGHT: f64 = 2.885;
-    /// Largest contribution of one sample, so that the sums stay small in fixed point: far beyond any stance.
+    /// The largest contribution of one sample, far beyond any stance, so that the sums stay small in fixed point.
     const CEILING: f64 = 60.0;
 
-    /// Takes the next sample and returns T.
+    /// Processes the next sample and returns T.
     #[inline]
     pub fn update(&mut self, motion: &Motion<T>) -> T {
         let ceiling = T::from_f64(Self::CEILING);
@@ -44,17 +44,17 @@ impl<T: Scalar> Shoe<T> {
         let [x, y, z, force_square, rate_square] =
             self.window.push(motion.time_us, [x, y, z, force_square, rate_square]);
         let mean_square = T::dot(&[x, y, z], &[x, y, z]);
-        // |f̄| − 1 = (|f̄|² − 1)/(|f̄| + 1), near a stance half of the numerator: no square root.
+        // |f̄| − 1 = (|f̄|² − 1)/(|f̄| + 1), near a stance half of the numerator, which saves a square root.
         let excess = (mean_square - T::ONE) * T::HALF;
         let spread = (force_square - mean_square).max(T::ZERO);
         rate_square.max(T::ZERO) + T::from_f64(Self::FORCE_WEIGHT) * (spread + excess * excess)
     }
 }
 
-/// Stance where T is below a fixed threshold.
+/// A detector of stance where T is below a fixed threshold.
 ///
-/// Right for one walker on one day: on other walks the same threshold loses stances or finds them in
-/// slow swings. [`Adaptive`](super::Adaptive) needs none.
+/// It suits one walker on one day: on other walks the same threshold loses stances or finds them in slow swings.
+/// [`Adaptive`](super::Adaptive) needs no threshold.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -73,7 +73,7 @@ impl<T: Scalar> FixedShoe<T> {
     /// The default threshold, (rad/s)².
     pub const THRESHOLD: f64 = 0.5;
 
-    /// Stance below `threshold`, in (rad/s)².
+    /// Creates a detector of stance below `threshold`, in (rad/s)².
     pub fn new(threshold: T) -> Self {
         Self { shoe: Shoe::default(), threshold }
     }
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
     use nalgebra::SVector;
 
-    /// T of a foot after a tenth of a second of this force (g) and rate (rad/s), sample by sample.
+    /// T of a foot after a tenth of a second of a force (g) and rate (rad/s) per sample.
     fn statistic(motion: impl Fn(usize) -> ([f64; 3], [f64; 3])) -> f64 {
         let mut shoe = Shoe::default();
         let mut last = 0.0;
@@ -112,10 +112,10 @@ mod tests {
     #[test]
     fn the_statistic_is_the_published_one() {
         assert!((statistic(|_| ([0.0, 0.6, 0.8], [0.2, -0.1, 0.4])) - 0.21).abs() < 1e-9);
-        // A force that shakes by 0.1 g beside gravity: κ times its square.
+        // A force that shakes by 0.1 g across gravity: κ times its square.
         let shaken = statistic(|k| ([if k % 2 == 0 { 0.1 } else { -0.1 }, 0.0, 1.0], [0.0; 3]));
         assert!((shaken / (2.885 * 0.01) - 1.0).abs() < 0.03, "{shaken}");
-        // One that is a little larger or smaller than gravity: κ times the square of that.
+        // A force a little larger or smaller than gravity: κ times the square of the difference.
         for force in [1.02, 0.98] {
             let found = statistic(|_| ([0.0, force, 0.0], [0.0; 3]));
             assert!((found / (2.885 * 0.02 * 0.02) - 1.0).abs() < 0.03, "{force} g: {found}");

@@ -5,8 +5,8 @@ use kestirim_scalar::{Components, Scalar};
 /// The detector of the paper (AHRS and ZUPT on a Razor IMU, eq. 2): stance where the magnitude of a single sample is within a
 /// threshold of 1 g.
 ///
-/// As published, and here, it fires many times inside every swing, where |f| passes through 1 g, and
-/// loses most of the path. It is offered for comparison.
+/// As published, and here, it triggers many times inside every swing, where |f| passes through 1 g, and loses most of
+/// the path. It is offered for comparison.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Magnitude<T> {
@@ -17,7 +17,7 @@ impl<T: Scalar> Magnitude<T> {
     /// The paper's threshold, in g.
     pub const THRESHOLD_G: f64 = 0.1;
 
-    /// Stance where ||f| − 1 g| < `threshold_g`, in g.
+    /// Creates a detector of stance where ||f| − 1 g| < `threshold_g`, in g.
     pub fn new(threshold_g: T) -> Self {
         Self { threshold_g }
     }
@@ -32,7 +32,7 @@ impl<T: Scalar> StanceDetector<T> for Magnitude<T> {
     }
 }
 
-/// Stance where the variance of |f| over 100 ms is below a threshold (acceleration moving variance).
+/// A detector of stance where the variance of |f| over 100 ms is below a threshold (acceleration moving variance).
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -50,12 +50,12 @@ pub struct MovingVariance<T> {
 impl<T: Scalar> MovingVariance<T> {
     /// The default threshold, in g².
     pub const THRESHOLD_G2: f64 = 0.0015;
-    /// The window (µs).
+    /// The length of the window (µs).
     const WINDOW_US: u32 = 97_500;
-    /// A magnitude is counted no larger (g), so that squares fit in fixed point.
+    /// The upper limit on a magnitude (g), so that squares fit in fixed point.
     const CEILING: f64 = 7.0;
 
-    /// Stance below `threshold_g2`, in g².
+    /// Creates a detector of stance below `threshold_g2`, in g².
     pub fn new(threshold_g2: T) -> Self {
         Self { window: SlidingMean::new(Self::WINDOW_US), threshold_g2 }
     }
@@ -65,14 +65,14 @@ impl<T: Scalar> StanceDetector<T> for MovingVariance<T> {
     #[inline]
     fn update(&mut self, motion: &Motion<T>) -> Verdict<T> {
         let [x, y, z] = *motion.force_g.as_array();
-        // The deviation from 1 g: its square loses fewer digits than the magnitude's.
+        // The square of the deviation from 1 g loses fewer digits than that of the magnitude.
         let deviation = (x.hypot(y).hypot(z) - T::ONE).min(T::from_f64(Self::CEILING));
         let [mean, square] = self.window.push(motion.time_us, [deviation, deviation * deviation]);
         Verdict { stance: square - mean * mean < self.threshold_g2, statistic: T::ZERO }
     }
 }
 
-/// Stance where the mean of |ω|² over 50 ms is below a threshold (angular rate energy).
+/// A detector of stance where the mean of |ω|² over 50 ms is below a threshold (angular rate energy).
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -90,12 +90,12 @@ pub struct AngularRateEnergy<T> {
 impl<T: Scalar> AngularRateEnergy<T> {
     /// The default threshold, in (rad/s)².
     pub const THRESHOLD: f64 = 0.4;
-    /// The window (µs).
+    /// The length of the window (µs).
     const WINDOW_US: u32 = 47_500;
-    /// Largest contribution of one sample, (rad/s)².
+    /// The largest contribution of one sample, (rad/s)².
     const CEILING: f64 = 60.0;
 
-    /// Stance below `threshold`, in (rad/s)².
+    /// Creates a detector of stance below `threshold`, in (rad/s)².
     pub fn new(threshold: T) -> Self {
         Self { window: SlidingMean::new(Self::WINDOW_US), threshold }
     }
@@ -116,7 +116,7 @@ mod tests {
     use super::*;
     use nalgebra::SVector;
 
-    /// Whether a foot stands after a second of this force along an axis (g) and this rate (rad/s), sample by sample.
+    /// Whether a foot stands after a second of a force along an axis (g) and a rate (rad/s) per sample.
     fn stands(mut detector: impl StanceDetector<f64>, motion: impl Fn(u32) -> (f64, f64)) -> bool {
         let mut stance = false;
         for k in 0..100 {
@@ -142,11 +142,11 @@ mod tests {
     fn a_variance_does_not_see_what_is_constant() {
         let detector = || MovingVariance::new(0.01);
         assert!(stands(detector(), |_| (3.0, 9.0)));
-        // To and fro by a tenth of gravity is a variance of a hundredth.
+        // Shaking by a tenth of gravity has a variance of a hundredth.
         let shaken =
             |by: f64| stands(detector(), |k| (if k % 2 == 0 { 1.0 + by } else { 1.0 - by }, 0.0));
         assert!(shaken(0.098) && !shaken(0.102));
-        // However hard the blow, seven are counted: over ten samples 0.7² is taken off a tenth of their square.
+        // However hard the blow, it counts as 7 g: over ten samples 0.7² is subtracted from a tenth of its square.
         let hit = |threshold| {
             stands(MovingVariance::new(threshold), |k| (if k == 95 { 1e9 } else { 1.0 }, 0.0))
         };

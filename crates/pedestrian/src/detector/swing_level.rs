@@ -1,9 +1,11 @@
 use kestirim_scalar::Scalar;
 
-/// How strongly a foot swings: the mean of the largest SHOE statistic of each 1.4 s in which it moved, of the last MOST of them.
+/// The strength of a foot's swings: the mean of the largest SHOE statistics of the last MOST stretches of 1.4 s in
+/// which it moved.
 ///
-/// Of a slow walker all of a stride is slower: so is what shows that a foot does not stand, where it turns back at toe-off and in the
-/// middle of the swing. Played k times as slow, a walk's statistic is between a k²th and a k⁴th.
+/// A slow walker's whole stride is slower, and so is the motion that shows that a foot does not stand, where it
+/// reverses at toe-off and in the middle of the swing. Played k times as slowly, a walk has a statistic between a k²th
+/// and a k⁴th.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -14,34 +16,36 @@ use kestirim_scalar::Scalar;
     ))
 )]
 pub(crate) struct SwingLevel<T, const MOST: u16> {
-    /// Of the first stretch it is 0: what came before the first sample is no stretch, or ends with it.
+    /// The beginning of the stretch (µs); 0 for the first, as a stretch before the first sample is none, or ends with
+    /// it.
     begun_us: u32,
-    /// The largest since then, (rad/s)².
+    /// The largest statistic since the beginning of the stretch, (rad/s)².
     peak: T,
-    /// The mean, (rad/s)².
+    /// The mean of the largest statistics, (rad/s)².
     mean: T,
-    /// How many it is of.
+    /// The number of stretches in the mean.
     count: u16,
     /// See [`Self::share`].
     share: T,
 }
 
 impl<T: Scalar, const MOST: u16> SwingLevel<T, MOST> {
-    /// A usual stride is shorter (µs).
+    /// The length of a stretch (µs), longer than a usual stride.
     const STRIDE_US: u32 = 1_400_000;
-    /// Largest T below which a foot does not swing, (rad/s)².
+    /// The smallest T of a swing, (rad/s)².
     const MOVES: f64 = 1.0;
-    /// A usual walker's level, (rad/s)², or less. A larger one changes nothing, and a peak counts for no more than twice this.
+    /// The level of a usual walker, (rad/s)², or less: a larger one changes nothing, and a peak counts for no more than
+    /// twice this.
     const USUAL: f64 = 36.0;
-    /// The least share: a foot that is lifted slowly sways where it stands, too (two recordings by cameras).
+    /// The smallest share: a foot that is lifted slowly also sways while it stands (two recordings by cameras).
     const LEAST: f64 = 1.0 / 6.0;
 
-    /// Before the first sample.
+    /// Creates a level without samples.
     pub(crate) fn new() -> Self {
         Self { begun_us: 0, peak: T::ZERO, mean: T::ZERO, count: 0, share: T::ONE }
     }
 
-    /// Takes the statistic at `time_us`.
+    /// Adds the statistic at `time_us`.
     #[inline]
     pub(crate) fn push(&mut self, time_us: u32, statistic: T) {
         self.peak = self.peak.max(statistic);
@@ -54,7 +58,8 @@ impl<T: Scalar, const MOST: u16> SwingLevel<T, MOST> {
     fn end_stride(&mut self, time_us: u32) {
         self.begun_us = time_us;
         let peak = core::mem::replace(&mut self.peak, T::ZERO);
-        // While a window is not full, at first and after a gap, the statistic is the largest number: such a stretch does not count.
+        // While a window is not full, at first and after a gap, the statistic is the largest number: such a stretch
+        // does not count.
         if peak > T::from_f64(Self::MOVES) && peak < T::MAX {
             self.count = self.count.saturating_add(1).min(MOST);
             let peak = peak.min(T::from_f64(2.0 * Self::USUAL));
@@ -64,7 +69,7 @@ impl<T: Scalar, const MOST: u16> SwingLevel<T, MOST> {
         }
     }
 
-    /// The level as a share of a usual walker's, of which a slow one has less; before the first stride, all of it.
+    /// The level as a share of a usual walker's, smaller for a slow walker; one before the first stride.
     #[inline(always)]
     pub(crate) fn share(&self) -> T {
         self.share
@@ -77,7 +82,7 @@ mod tests {
 
     type Level = SwingLevel<f64, 8>;
 
-    /// Strides with a swing whose largest statistic is this.
+    /// Adds strides with a swing whose largest statistic is `peak`.
     fn walk(level: &mut Level, from_us: u32, strides: u32, peak: f64) {
         for k in 0..14 * strides {
             let statistic = if k % 14 == 7 { peak } else { 0.02 };

@@ -1,12 +1,12 @@
 use kestirim_scalar::Scalar;
 
-/// Capacity of a window in samples: 50 ms at up to 640 Hz; of a faster stream it holds the newest.
+/// The capacity of a window in samples: 50 ms at up to 640 Hz; of a faster stream it holds only the newest.
 const CAPACITY: usize = 32;
 
-/// Means of `K` features over the last stretch of time, O(1) a sample.
+/// Means of `K` features over a sliding time window, O(1) per sample.
 ///
-/// Taking the oldest sample off a running sum leaves a float's rounding behind for ever, so each time the
-/// ring comes round the sum is made anew.
+/// Subtracting the oldest sample from a running sum leaves a float's rounding errors for ever, so the sum is computed
+/// afresh each time the ring wraps round.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -32,7 +32,7 @@ pub(crate) struct SlidingMean<T, const K: usize> {
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     sums: [T; K],
     span_us: u32,
-    /// 1/count, kept because a division is expensive and the count seldom changes.
+    /// 1/count, cached because a division is expensive and the count seldom changes.
     reciprocal: T,
 }
 
@@ -114,7 +114,7 @@ impl<T: Scalar, const K: usize> SlidingMean<T, K> {
         self.sums.map(|sum| sum * self.reciprocal)
     }
 
-    /// Index of the sample of this age, the newest being of age 0.
+    /// The index of the sample of this age, where the newest has age 0.
     #[inline]
     fn index(&self, age: usize) -> usize {
         self.newest.wrapping_sub(age) % CAPACITY
@@ -141,10 +141,10 @@ mod tests {
         (k * 37 % 101) as f64
     }
 
-    /// Whether the means are those of the samples within the last stretch (µs), one every so many µs.
+    /// Asserts that the means are those of the samples within the span (µs), one every interval (µs).
     fn are_means(span_us: u32, interval_us: u32) {
         let mut window = SlidingMean::<f64, 2>::new(span_us);
-        // The clock goes round on the way.
+        // The clock wraps round on the way.
         let time_us = |k: usize| (u32::MAX - 100_000).wrapping_add(k as u32 * interval_us);
         for k in 0..300 {
             let means = window.push(time_us(k), [value(k), -value(k)]);
@@ -162,7 +162,7 @@ mod tests {
         are_means(50_000, 10_000);
         are_means(47_500, 5_000);
         are_means(50_000, 60_000);
-        // Of a fast stream the newest that fit.
+        // A fast stream, of which only the newest samples fit.
         are_means(50_000, 1_000);
     }
 

@@ -1,10 +1,10 @@
-//! What a tracker does around its navigator, with one that only keeps what it is told.
+//! Tests of a tracker apart from its navigator, with one that only records what it is given.
 
 use super::*;
 use kestirim_scalar::Q12_20;
 use nalgebra::Vector3;
 
-/// A navigator that is where it is put.
+/// A navigator that stays where it is put.
 #[derive(Clone, Copy, Debug)]
 struct Put<T: Scalar> {
     position: SVector<T, 3>,
@@ -58,7 +58,7 @@ impl<T: Scalar> Walk<T> {
         ImuSample { time_us: self.time_us, specific_force, angular_rate: self.angular_rate }
     }
 
-    /// The next sample, in stance with a statistic or not; a stride that it ends.
+    /// Processes the next sample, in stance with a statistic, or not; returns a stride that it ends.
     fn on(&mut self, statistic: Option<f64>) -> Option<Stride<T>> {
         self.time_us += 10_000;
         let sample = self.sample();
@@ -105,7 +105,7 @@ fn a_foot_beyond_the_numbers_is_told() {
     walk.navigator().velocity.y = f64::NAN;
     assert!(walk.engine.warnings().out_of_range);
 
-    // To and fro by 20 m a hundred times: the path is as long as the numbers reach, the foot near by.
+    // Back and forth by 20 m a hundred times: the path reaches the limit of the numbers, the foot stays near.
     let mut walk = Walk::<Q12_20>::new(true);
     walk.on(Some(0.05));
     for stride in 0..105 {
@@ -156,13 +156,14 @@ fn what_was_pushed_since_a_missed_turn_is_without_gravity() {
     }
     let bridged = strides.finish().expect("a stride").bridged;
     assert!(bridged > 0.01 && bridged < 0.2, "{bridged} rad");
-    // Half of the plateau's four steps, and the two after it; what gravity took is no push.
+    // Half of the plateau's four steps, and the two after it; the effect of gravity is not part of the push.
     let pushed = (gained + Vector3::new(0.0, 0.0, STANDARD_GRAVITY * interval)) * 4.0;
     let missed = navigator.missed.expect("a plateau");
     assert!((missed.pushed - pushed).norm() < 1e-9, "{missed:?} {pushed}");
 }
 
-/// A stance, a swing in which so many seconds are missing, and a stance a metre on; the stride, and the turn of the gap.
+/// Walks a stance, a swing with missing samples of `missing_us`, and a stance a metre on; returns the stride, and the
+/// turn in the gap.
 fn over_a_gap(missing_us: u64) -> (Stride<f64>, Vector3<f64>) {
     let mut walk = Walk::<f64>::new(true);
     for _ in 0..20 {
@@ -190,10 +191,10 @@ fn over_a_gap(missing_us: u64) -> (Stride<f64>, Vector3<f64>) {
 #[test]
 fn a_body_turns_in_a_gap_as_its_rates_at_both_ends_say() {
     let (stride, turn) = over_a_gap(150_000);
-    // (The biases are learnt meanwhile.)
+    // (The biases are being learnt meanwhile.)
     assert!((turn - Vector3::new(2.0, 1.5, 1.0) * 0.15).norm() < 2e-3, "{turn}");
     assert!((stride.unseen - 0.15).abs() < 1e-9, "{stride:?}");
-    // No gap, and the axis moves: what coning adds is a twelfth of the turn before × this one.
+    // No gap, and the axis moves: the coning correction is a twelfth of the turn before × this one.
     let (stride, turn) = over_a_gap(10_000);
     let rate = Vector3::new(3.0, -1.0, 2.0) * 0.01;
     let coning = (Vector3::new(1.0, 4.0, 0.0) * 0.01).cross(&rate) / 12.0;

@@ -1,11 +1,11 @@
-//! Findings about a stream, at their bounds.
+//! Tests of findings about a stream, at their bounds.
 
 use super::*;
 use nalgebra::Vector3;
 
 fn found(change: impl FnOnce(&mut Health<f64>)) -> Warnings {
     let mut health = Health::new();
-    // All that follows is about streams that stood once.
+    // All tests below are about streams that stood once.
     health.standstill(1.0, SensorClass::Industrial);
     assert_eq!(health.warnings(), Warnings::default());
     change(&mut health);
@@ -34,7 +34,7 @@ fn words_are_those_of_what_was_found() {
     assert!(found(Health::gap).gaps && found(Health::clipped).gyroscope_saturated);
 }
 
-/// Runs of the same value, so many times three of them and one of another; along one axis.
+/// Values along one axis: `count` runs of `length` samples of the same value, each followed by another one.
 fn runs(
     count: usize,
     length: usize,
@@ -57,7 +57,7 @@ fn a_range_ends_where_a_large_value_is_shown_three_times_more_often_than_by_chan
             (5, 3, 18.5, false),
             (6, 2, 18.5, false),
             (6, 3, 17.5, false),
-            // One long run is one.
+            // One long run counts once.
             (1, 40, 18.5, false),
         ] {
             let warnings = found(|health| {
@@ -101,7 +101,7 @@ fn gravity_at_rest_is_that_of_the_earth() {
     }
 }
 
-/// What so many landings with the same velocity left over are found to be, and how many lost the tilt.
+/// The warnings after a number of landings with the same residual velocity, and how many of them lost the tilt.
 fn landed(
     count: u32,
     velocity: [f64; 3],
@@ -140,7 +140,7 @@ fn a_landing_at_metres_a_second_has_lost_the_tilt_and_four_are_of_wrong_axes() {
 
 #[test]
 fn landings_are_averaged_over_eight() {
-    // Each counts two metres a second sideways and half a metre upwards at most.
+    // Each landing counts for at most two metres per second sideways and half a metre per second upwards.
     let implausible = |count, velocity| landed(count, velocity, |_| ()).0.landings_implausible;
     for axis in 0..2 {
         let mut wild = [0.0; 3];
@@ -166,7 +166,7 @@ fn strides_that_end_elsewhere_by_much_of_their_length_are_told() {
     let (shuffled, walked) = ((0.24, 0.14), (1.3, 0.1));
     assert!(told(&[shuffled; 6]) && !told(&[shuffled; 5]));
     assert!(!told(&[walked; 100]));
-    // A stumble now and then is none.
+    // An occasional stumble is no fault.
     let stumbles: [_; 100] = core::array::from_fn(|at| if at % 2 == 0 { shuffled } else { walked });
     assert!(!told(&stumbles));
 }

@@ -7,18 +7,18 @@ use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// An error-state Kalman filter on zero velocities (Foxlin 2005; Skog et al. 2010).
+/// An error-state Kalman filter with zero-velocity updates (Foxlin 2005; Skog et al. 2010).
 ///
 /// Six error states in earth axes: velocity (0–2, m/s) and attitude (3–5, rad; the true orientation is the
 /// estimate turned by it). A zero velocity is three scalar updates, so that nothing is inverted. The
 /// covariances are kept 1000 times as large, which leaves every gain as it is and lets fixed point
 /// resolve a milliradian's square.
 ///
-/// Two things that other such filters carry are no states here:
-/// - **Position.** Whether a velocity error came from tilt (it grew linearly) or from noise (a random walk),
-///   the expected position error it left behind is half of it times the swing's duration. That is what the
-///   position is corrected by, and a third of the filter's work is saved.
-/// - **Gyro bias.** Standstills show it ([`Alignment`](crate::Alignment)), walking hardly does.
+/// Two quantities that other such filters estimate are no states here:
+/// - **Position.** Whether a velocity error came from tilt (growing linearly) or from noise (a random walk), the
+///   expected position error that it left is half of it times the swing's duration. The position is corrected by that,
+///   which saves a third of the filter's work.
+/// - **Gyro bias.** It is observable at standstill ([`Alignment`](crate::Alignment)), but hardly in walking.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ekf<T: Scalar> {
@@ -26,29 +26,30 @@ pub struct Ekf<T: Scalar> {
     strapdown: Strapdown<T>,
     orientation: Orientation<T>,
     noise: Noise<T>,
-    /// Since the last zero velocity (s).
+    /// The time since the last zero velocity (s).
     swing: T,
 }
 
 impl<T: Scalar> Ekf<T> {
-    /// Scale of all covariances.
+    /// The scale of all covariances.
     const SCALE: f64 = 1000.0;
-    /// Scale of all standard deviations.
+    /// The scale of all standard deviations.
     const ROOT_OF_SCALE: f64 = 31.622_776_6;
-    /// Standard deviation of the first tilt (rad).
+    /// The initial standard deviation of the tilt (rad).
     const TILT: f64 = 0.02;
-    /// Standard deviation of a zero velocity at rest, sampled at [`Ekf::REFERENCE_INTERVAL`] (m/s).
+    /// The standard deviation of a zero velocity at rest, sampled at [`Ekf::REFERENCE_INTERVAL`] (m/s).
     const ZERO_VELOCITY: f64 = 0.02;
-    /// At another interval the variance changes in proportion, so that a second of stance weighs the same (s).
+    /// The reference interval (s): at another interval the variance changes in proportion, so that a second of stance
+    /// weighs the same.
     const REFERENCE_INTERVAL: f64 = 0.005;
-    /// Value of the SHOE statistic T at which the variance doubles, (rad/s)².
+    /// The value of the SHOE statistic T at which the variance doubles, (rad/s)².
     const DOUBTFUL: f64 = 0.3;
-    /// Standard deviation of a turn that the gyroscope missed, relative to what it is taken for.
+    /// The standard deviation of a turn that the gyroscope missed, relative to its estimate.
     const MISSED: f64 = 0.5;
-    /// Share of that about the vertical: a foot that moves too fast for its gyroscope lands with velocities which have
-    /// other reasons, too, and would turn the heading.
+    /// The share of that uncertainty about the vertical: a foot that moves too fast for its gyroscope lands with
+    /// velocities that have other causes, too, and would turn the heading.
     const MISSED_HEADING: f64 = 0.5;
-    /// Longest swing in which the uncertainty grows (s): beyond it the next stance has full weight anyway.
+    /// The longest swing in which the uncertainty grows (s): after it the next stance has full weight anyway.
     const LONGEST_SWING: f64 = 3.0;
 
     /// The covariance of the error, 6 × 6 in (m/s, rad)² × 1000.
@@ -56,7 +57,7 @@ impl<T: Scalar> Ekf<T> {
         &self.error.covariance
     }
 
-    /// P through one step in which the force changed the velocity by `pushed` (m/s, earth).
+    /// Propagates P through one step in which the force changed the velocity by `pushed` (m/s, earth).
     #[inline]
     fn propagate_covariance(&mut self, pushed: &SVector<T, 3>, dt: T) {
         let p = &mut self.error.covariance;
@@ -75,7 +76,7 @@ impl<T: Scalar> Ekf<T> {
         p.add_variance::<5>(attitude);
     }
 
-    /// Moves what the updates found of the error into the estimate.
+    /// Moves the error that the updates found into the estimate.
     #[inline]
     fn inject(&mut self) {
         let [vx, vy, vz, tx, ty, tz] = *self.error.mean.as_array();
@@ -118,7 +119,7 @@ impl<T: Scalar> Navigator<T> for Ekf<T> {
         let velocity = cross(&turn, &missed.pushed);
         self.orientation = self.orientation.turned_in_earth(&turn);
         self.strapdown.velocity += velocity;
-        // By as much as the turn is wrong, all of its consequences are.
+        // All consequences of the turn are wrong by the same share as the turn itself.
         let ([x, y, z], [tx, ty, tz]) = (*velocity.as_array(), *turn.as_array());
         let doubtful = [x, y, z, tx, ty, tz * T::from_f64(Self::MISSED_HEADING)];
         let share = T::from_f64(Self::MISSED * Self::ROOT_OF_SCALE);
@@ -127,7 +128,7 @@ impl<T: Scalar> Navigator<T> for Ekf<T> {
 
     #[inline]
     fn zero_velocity(&mut self, zero: &ZeroVelocity<T>) {
-        // A velocity that wanders touches no other state: what it gained since the last time is added now.
+        // The velocity's random walk affects no other state: its growth since the last time is added now.
         let wandered = self.noise.velocity_variance * self.swing;
         self.error.covariance.add_variance::<0>(wandered);
         self.error.covariance.add_variance::<1>(wandered);
@@ -138,7 +139,7 @@ impl<T: Scalar> Navigator<T> for Ekf<T> {
         let trust = T::ONE + zero.statistic * T::from_f64(1.0 / Self::DOUBTFUL);
         let variance = base * trust / zero.interval.max(T::from_f64(0.001));
         let [x, y, z] = *(zero.velocity - self.strapdown.velocity).as_array();
-        // An update is refused only where P has left the range of numbers; the others still hold.
+        // An update is refused only where P has left the range of numbers; the other updates remain valid.
         let _ = self.error.update_component::<0>(x, variance);
         let _ = self.error.update_component::<1>(y - self.error.mean.as_array()[1], variance);
         let _ = self.error.update_component::<2>(z - self.error.mean.as_array()[2], variance);

@@ -6,35 +6,34 @@ use kestirim_attitude::{Ahrs, Gains, Orientation};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// The paper's own architecture: an attitude reference, integration, and the drift of each stride taken
-/// back when it ends.
+/// The paper's own architecture: an attitude reference, integration, and removal of each stride's drift at its end.
 ///
-/// A velocity that is wrong by e at the end of a swing of T seconds drifted there linearly: the position
-/// is e·T/2 too far, and the tilt was wrong by about e/(g·T). Both are put right, the latter by half.
+/// A velocity error of e at the end of a swing of T seconds has grown linearly: the position is e·T/2 too far, and the
+/// tilt was wrong by about e/(g·T). Both are corrected, the latter by half.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lite<T: Scalar> {
     ahrs: Ahrs<T>,
     strapdown: Strapdown<T>,
-    /// Since the last zero velocity (s).
+    /// The time of drift since the last zero velocity (s).
     drifted: T,
     until_gravity: u8,
 }
 
 impl<T: Scalar> Lite<T> {
-    /// Share of the tilt that would explain a stride's drift by which the attitude is corrected.
+    /// The share of the tilt that would explain a stride's drift by which the attitude is corrected.
     const TILT_SHARE: f64 = 0.5;
-    /// A drift within less than this (s) says nothing of the tilt.
+    /// The shortest time of drift (s) in which a velocity error shows the tilt: a shorter one counts as this long.
     const SHORTEST_SWING: f64 = 0.3;
-    /// The reference is shown gravity in one stance sample of so many, with so many times the gain.
+    /// The reference uses gravity in one of this many stance samples, with as many times the gain.
     const GRAVITY_EVERY: u8 = 4;
-    /// Longest drift that is still taken to be linear (s).
+    /// The longest drift that is assumed linear (s).
     const LONGEST_SWING: f64 = 10.0;
 }
 
 impl<T: Scalar> Navigator<T> for Lite<T> {
     fn start(_: SensorClass, orientation: Orientation<T>) -> Self {
-        // In stance gravity corrects the tilt within a second; the bias is the alignment's business.
+        // In stance gravity corrects the tilt within a second; the bias is left to the alignment.
         let tilt = T::from_f64(f64::from(Self::GRAVITY_EVERY));
         let gains = Gains { tilt, bias: T::ZERO, gate: T::from_f64(0.2) };
         Self {

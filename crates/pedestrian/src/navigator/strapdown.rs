@@ -4,7 +4,7 @@ use kestirim_attitude::Orientation;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// Position and velocity by integration of the specific force (earth axes).
+/// Position and velocity from integration of the specific force (earth axes).
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Strapdown<T: Scalar> {
@@ -17,11 +17,11 @@ impl<T: Scalar> Strapdown<T> {
         Self { position: SVector::zeros(), velocity: SVector::zeros() }
     }
 
-    /// Integrates one step from the orientation at its beginning; returns the force's velocity change
-    /// ∫f dt (m/s, earth), gravity not taken off.
+    /// Integrates one step from the orientation at its beginning; returns the velocity change by the force, ∫f dt (m/s,
+    /// earth), gravity not subtracted.
     ///
-    /// The body turns by φ = ω·dt meanwhile: ∫f dt ≈ R·(f + ½·φ × f)·dt (Savage 1998, rotation
-    /// compensation). The velocity changes linearly over the step.
+    /// The body turns by φ = ω·dt during the step: ∫f dt ≈ R·(f + ½·φ × f)·dt (Savage 1998, rotation compensation). The
+    /// velocity changes linearly over the step.
     #[inline]
     pub(super) fn integrate(
         &mut self,
@@ -29,7 +29,7 @@ impl<T: Scalar> Strapdown<T> {
         step: &Step<T>,
     ) -> SVector<T, 3> {
         let dt = step.interval;
-        // What gravity changes the velocity by in the step.
+        // The velocity change by gravity in the step.
         let fall = dt * T::from_f64(STANDARD_GRAVITY);
         let body = step.force_g * fall;
         let pushed = orientation.to_earth(&(body + cross(&step.turn, &body) * T::HALF));
@@ -43,9 +43,9 @@ impl<T: Scalar> Strapdown<T> {
 
 /// The velocity (m/s, earth) of a sensor on a foot that rolls over its ball.
 ///
-/// In stance the foot is not at rest: its heel is on the way up already, and a sensor `height` above the
-/// point of contact moves at ω × (0, 0, height). Taken for zero, those few centimetres a second are
-/// missing from every stride: 1.7 % of the path of the walks we measured.
+/// In stance the foot is not at rest: its heel is already rising, and a sensor `height` above the point of contact
+/// moves at ω × (0, 0, height). If that is taken for zero, those few centimetres per second are missing from every
+/// stride: 1.7 % of the path of the walks we measured.
 #[inline]
 pub(crate) fn velocity_of_rolling<T: Scalar>(
     orientation: &Orientation<T>,
@@ -56,8 +56,11 @@ pub(crate) fn velocity_of_rolling<T: Scalar>(
     SVector::from([y * height, -x * height, T::ZERO])
 }
 
-/// What is added to rate × interval, a rotation vector (rad), because the axis of the turn moves within the step: a twelfth of the turn
-/// `before` × this one, if both steps are equally long and their rates are means that change evenly (coning; Savage 1998).
+/// The coning correction to rate × interval, a rotation vector (rad), because the axis of the turn moves within the
+/// step.
+///
+/// It is a twelfth of the turn `before` × this one, if both steps are equally long and their rates are means that
+/// change linearly (Savage 1998).
 #[inline]
 pub(crate) fn coning<T: Scalar>(before: &SVector<T, 3>, turn: &SVector<T, 3>) -> SVector<T, 3> {
     cross(before, turn) * T::from_f64(1.0 / 12.0)
@@ -74,7 +77,7 @@ mod tests {
     use super::*;
     use nalgebra::Vector3;
 
-    /// A step of a body with this force (g) and rate (rad/s).
+    /// A step of a body with a force (g) and a rate (rad/s).
     fn step(interval: f64, force_g: Vector3<f64>, angular_rate: Vector3<f64>) -> Step<f64> {
         Step { interval, force_g, angular_rate, turn: angular_rate * interval }
     }
@@ -123,7 +126,7 @@ mod tests {
 
     #[test]
     fn a_cone_is_followed_in_steps_of_its_mean_rates() {
-        // The axis of a turn by 5 rad/s goes round in half a second.
+        // The axis of a turn at 5 rad/s goes round in half a second.
         let (rate, around) = (5.0, 4.0 * core::f64::consts::PI);
         let mean = |from: f64, to: f64| {
             let whole = Vector3::new(

@@ -1,10 +1,11 @@
-//! What a recording shows that a stream does not yet.
+//! Tests of what a recording shows that a stream does not show yet.
 
 use crate::common::Foot;
 use kestirim_pedestrian::{Config, Ekf, ImuSample, Lite, OfflineTracker};
 use nalgebra::Vector3;
 
-/// What looks ahead takes for a stance, of a sensor that turns about the vertical at this rate (rad/s) for so long (s) each.
+/// The stances found by the offline tracker for a sensor that turns about the vertical at each rate (rad/s) for a
+/// duration (s).
 fn stances_offline(turns: &[(f64, f64)]) -> Vec<(f64, bool)> {
     let mut samples = Vec::new();
     for &(rate, duration) in turns {
@@ -24,7 +25,7 @@ fn stances_offline(turns: &[(f64, f64)]) -> Vec<(f64, bool)> {
 
 #[test]
 fn looking_ahead_a_stance_is_what_is_calmest_within_more_than_half_a_second() {
-    // Squares of 1, for 5 s, then of 1.4² and of 0.
+    // Squared rates of 1, for 5 s, then of 1.4² and of 0.
     let stances = stances_offline(&[(1.0, 5.0), (1.4, 5.0), (0.0, 5.0)]);
     for (begin, end, stands) in [
         (0.1, 4.9, true),

@@ -1,4 +1,4 @@
-//! Streams as recorders deliver them: irregular, doubled, with gaps, saturated, in wrong units, broken.
+//! Tests with streams as recorders deliver them: irregular, doubled, with gaps, saturated, in wrong units, broken.
 
 use crate::common::Foot;
 use kestirim_pedestrian::detector::{
@@ -54,7 +54,7 @@ fn what_is_wrong_with_a_stream_is_named() {
     assert!(warnings(&never_still.samples()).never_still);
 }
 
-/// A walk of twenty strides whose gyroscope ends at this rate (rad/s), with half a per cent of noise there.
+/// A walk of twenty strides whose gyroscope clips at this rate (rad/s), with half a per cent of noise there.
 fn clipped_at(end: f64) -> (Vec<ImuSample<f64>>, Foot) {
     let foot = Foot { rate: 200.0, pitch: 2.0, headings: vec![0.0; 20], ..Foot::default() };
     let mut samples = foot.samples::<f64>();
@@ -146,7 +146,7 @@ fn a_refused_sample_changes_nothing() {
             assert_eq!(bothered.update(&bad), Err(error));
         }
         assert_eq!(bothered.update(sample), Ok(expected));
-        // Rates that are repeated are left out for less than 0.15 s: the last sample that was taken is no older.
+        // Repeated rates are skipped for less than 0.15 s: the last accepted sample is no older.
         if let Some(time_us) = sample.time_us.checked_sub(150_000) {
             let older = ImuSample { time_us, ..*sample };
             assert_eq!(bothered.update(&older), Err(Error::TimeBackwards));
@@ -167,7 +167,7 @@ fn a_standstill_shows_the_bias_of_a_bare_chip_and_hardly_moves_that_of_a_good_on
     };
     assert!((learnt(SensorClass::Consumer) - bias).abs().max() < 1e-3);
 
-    // A foot that sways for a second is no proof of a bias to a gyroscope known to be good.
+    // A foot that sways for a second is no evidence of a bias for a gyroscope known to be good.
     let mut tracker =
         EkfTracker::<f64>::new(Config { sensor: SensorClass::Industrial, ..Config::default() });
     for mut sample in (Foot { headings: vec![], ..Foot::default() }).samples() {
@@ -190,7 +190,7 @@ fn offline_names_the_sample_it_cannot_take() {
     assert_eq!(refused.err(), Some((3, Error::NoMemory)));
 }
 
-/// Shares of the verdicts that are stance: while the foot stands, and in the middle of its swings.
+/// The shares of verdicts that are stance: while the foot stands, and in the middle of its swings.
 fn stance_shares(mut detector: impl StanceDetector<f64>, noise: f64) -> (f64, f64) {
     let foot = Foot { noise, ..Foot::default() };
     let (mut standing, mut swinging) = (Vec::new(), Vec::new());

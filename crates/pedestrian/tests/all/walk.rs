@@ -1,4 +1,4 @@
-//! Synthetic walks of known length, in every scalar, navigator and mode.
+//! Tests with synthetic walks of known length, for every scalar, navigator and mode.
 
 use crate::common::Foot;
 use kestirim_pedestrian::{
@@ -45,7 +45,7 @@ fn check<T: Scalar>(walked: &Walked<T>, foot: &Foot, end: [f64; 2]) {
         "{} of {length} m",
         walked.path_length
     );
-    // What is left of a gyro bias turns the path.
+    // The residual gyro bias turns the path.
     let tolerance = if foot.noise > 0.0 { 0.6 } else { 0.2 };
     for (position, end) in walked.last.position.iter().zip(end) {
         assert!((position.to_f64() - end).abs() < tolerance, "{position:?} instead of {end} m");
@@ -74,7 +74,7 @@ fn a_straight_walk() {
     let single = check_all::<f32>(&foot, [12.0, 0.0]);
     let double = check_all::<f64>(&foot, [12.0, 0.0]);
     let fixed = check_all::<Q12_20>(&foot, [12.0, 0.0]);
-    // Without noise, rates at the top of a swing are repeated in single precision, and left out.
+    // Without noise, rates at the top of a swing are repeated in single precision, and skipped.
     assert!((single / double - 1.0).abs() < 1e-3, "{single} {double}");
     assert!((fixed / double - 1.0).abs() < 5e-3, "{fixed} {double}");
 }
@@ -102,7 +102,7 @@ fn a_biased_and_noisy_chip_walks_as_far() {
     check_all::<Q12_20>(&foot, [12.0, 0.0]);
 }
 
-/// A bus that stalls for 0.6 s delivers zeros: the walk before is as it was, and the tracker goes on.
+/// A bus that stalls for 0.6 s delivers zeros: the walk before is unaffected, and the tracker continues.
 #[test]
 fn zeros_teach_nothing_and_end_nothing() {
     fn check<T: Scalar, N: Navigator<T>>(samples: &[ImuSample<T>]) {

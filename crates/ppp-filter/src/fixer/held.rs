@@ -1,4 +1,4 @@
-//! Integers that were found, as long as their phases go on.
+//! Integers that were found, held while their phases are continuous.
 
 use heapless::Vec;
 use kestirim_gnss_ppp::Constellation;
@@ -6,7 +6,7 @@ use kestirim_gnss_ppp::Constellation;
 use super::pairs::{Found, Pair, Validation};
 use super::wide_lane::Candidate;
 
-/// A satellite's whole numbers, beside one of its system: of the wide lane and on the first carrier.
+/// A satellite's integers relative to another satellite of its system: of the wide lane and on the first carrier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Whole {
     satellite: u8,
@@ -15,25 +15,26 @@ struct Whole {
     first: i64,
 }
 
-/// Integers by the state that is their ambiguity.
+/// The held integers, indexed by the state of their ambiguity.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Held<const N: usize> {
     integers: [Option<Whole>; N],
-    /// How those that were found last were found, if there are any.
+    /// The validation of the integers found last, if there are any.
     pub(super) validation: Option<Validation>,
 }
 
 impl<const N: usize> Held<N> {
     pub(super) const NONE: Self = Self { integers: [None; N], validation: None };
 
-    /// A phase begins anew.
+    /// Releases the integer of a phase that is reset.
     pub(super) fn release(&mut self, state: usize) {
         if let Some(place) = self.integers.get_mut(state) {
             *place = None;
         }
     }
 
-    /// Takes in what was found. If it contradicts what is held, one of both is wrong, and nothing is held any more.
+    /// Adds integers that were found. If they contradict the held ones, either set is wrong, and nothing is held any
+    /// more.
     pub(super) fn take(&mut self, found: &Found<N>) {
         for system in [Constellation::Gps, Constellation::Galileo] {
             if !self.take_system(system, found) {
@@ -81,7 +82,7 @@ impl<const N: usize> Held<N> {
         held.filter(|held| held.satellite == candidate.satellite)
     }
 
-    /// The pairs of which integers are held, with the wide lanes that are held, too.
+    /// The pairs with held integers, and with the wide lanes that are held, too.
     pub(super) fn pairs(&self, candidates: &Vec<Candidate, N>) -> Vec<(Pair, i64), N> {
         let mut known: Vec<Candidate, N> = Vec::new();
         for candidate in candidates {
@@ -90,7 +91,7 @@ impl<const N: usize> Held<N> {
             }
         }
         let mut pairs = Vec::new();
-        // By reference: a vector that is taken apart may panic.
+        // Iterated by reference, as consuming a vector may panic.
         for pair in &Pair::all::<N>(&known.iter()) {
             if let (Some(one), Some(reference)) = (self.of(&pair.one), self.of(&pair.reference)) {
                 let _ = pairs.push((*pair, one.first.wrapping_sub(reference.first)));
@@ -138,7 +139,7 @@ mod tests {
         let mut held = Held::<12>::NONE;
         held.take(&found(&all, [4, -2, 9]));
         assert_eq!(integers(&held, &all), [4, -2, 9]);
-        // Another satellite is the highest, and the wide lanes have another fraction.
+        // Another satellite is the highest, and the wide lanes have another fractional part.
         all = candidates([8.0, 4.0, 3.0, 6.0]);
         all[1].elevation = 1.2;
         held.take(&found(&all, [-4, -6, 5]));

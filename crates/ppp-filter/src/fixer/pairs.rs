@@ -1,4 +1,4 @@
-//! Narrow lanes: what is left of ambiguities between two satellites of a system, whose wide lanes are whole.
+//! Narrow lanes: the remaining ambiguities between two satellites of a system whose wide lanes are integers.
 
 use heapless::Vec;
 use kestirim_gnss_ppp::Constellation;
@@ -8,20 +8,23 @@ use kestirim_scalar::Components;
 
 use super::wide_lane::Candidate;
 
-/// What models leave of each satellite's ambiguity (orbit, clock, antennas, weather), m.
+/// The standard deviation of model errors in each satellite's ambiguity (orbit, clock, antennas, weather), m.
 const MODEL: f64 = 0.006;
-/// How many pairs must be found at once. With six to eight, those of one in a hundred hours were wrong together.
+/// The number of pairs that must be found at once. With six to eight, the integers of one in a hundred hours were wrong
+/// together.
 const FEWEST: usize = 9;
-/// The tests: the least success rate, the least ratio at that rate and the one that is enough where the rate is high, and the largest
-/// mean square of what the integers are off, in variances. With the lower ratio throughout, those of one in three hundred hours were
-/// wrong.
+/// The minimum success rate.
 const LEAST_SUCCESS: f64 = 0.98;
+/// The minimum ratio at a success rate below [`HIGH_SUCCESS`].
 const LEAST_RATIO: f64 = 3.0;
+/// The success rate at which a lower ratio is enough.
 const HIGH_SUCCESS: f64 = 0.995;
+/// The minimum ratio at a high success rate. With it throughout, the integers of one in three hundred hours were wrong.
 const RATIO_AT_HIGH_SUCCESS: f64 = 2.5;
+/// The largest mean square of the integers' misfit, in variances.
 const LARGEST_MISFIT: f64 = 3.0;
 
-/// A satellite less the highest of its system.
+/// A satellite minus the highest of its system.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     pub(super) one: Candidate,
@@ -29,7 +32,7 @@ pub(super) struct Pair {
 }
 
 impl Pair {
-    /// Each satellite with the highest of its system.
+    /// Pairs each satellite with the highest of its system.
     pub(super) fn all<'a, const N: usize>(
         candidates: &(impl Iterator<Item = &'a Candidate> + Clone),
     ) -> Vec<Self, N> {
@@ -46,12 +49,12 @@ impl Pair {
         pairs
     }
 
-    /// The row of both ambiguities.
+    /// The observation row of the difference of both ambiguities.
     pub(super) const fn row(&self) -> SparseRow<f64, 2> {
         SparseRow::new([(self.one.state, 1.0), (self.reference.state, -1.0)])
     }
 
-    /// What the difference of both ambiguities is with a whole number on the first carrier, m.
+    /// The difference of both ambiguities for an integer on the first carrier, m.
     pub(super) fn length(&self, integer: f64) -> f64 {
         let [first, second] = self.one.carriers.frequency();
         let wide = self.one.wide - self.reference.wide;
@@ -59,18 +62,18 @@ impl Pair {
         self.one.carriers.narrow_lane() * cycles + self.one.bias - self.reference.bias
     }
 
-    /// What the difference of both ambiguities is, m.
+    /// The difference of both ambiguities in the estimate, m.
     pub(super) fn found<const N: usize>(&self, estimate: &Gaussian<f64, N>) -> f64 {
         let of = |state: usize| estimate.mean.as_array().get(state).copied().unwrap_or(0.0);
         of(self.one.state) - of(self.reference.state)
     }
 
-    /// The number of cycles on the first carrier as the filter has it, not whole.
+    /// The float number of cycles on the first carrier in the estimate.
     fn float<const N: usize>(&self, estimate: &Gaussian<f64, N>) -> f64 {
         (self.found(estimate) - self.length(0.0)) / self.one.carriers.narrow_lane()
     }
 
-    /// Covariance of two pairs' cycles.
+    /// The covariance of two pairs, cycles².
     fn covariance<const N: usize>(&self, other: &Self, estimate: &Gaussian<f64, N>) -> f64 {
         let of = |a: &Candidate, b: &Candidate| {
             let model = if a.state == b.state { MODEL * MODEL } else { 0.0 };
@@ -83,28 +86,28 @@ impl Pair {
         square / (self.one.carriers.narrow_lane() * other.one.carriers.narrow_lane())
     }
 
-    /// Variance of a pair's length, m², if both ambiguities are whole: what models leave.
+    /// The variance of a pair's length, m², if both ambiguities are integers: that of model errors.
     pub(super) const fn model_variance() -> f64 {
         2.0 * MODEL * MODEL
     }
 }
 
-/// How integers were found.
+/// The test results of the integers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Validation {
     pub(super) ratio: f64,
     pub(super) success_rate: f64,
 }
 
-/// Integers of some pairs that pass the tests.
+/// The integers of some pairs that pass the tests.
 pub(super) struct Found<const N: usize> {
     pub(super) pairs: Vec<Pair, N>,
     pub(super) integers: Vec<i64, N>,
     pub(super) validation: Validation,
 }
 
-/// Looks for the integers of all pairs, then of fewer, the lowest satellite left out each time (partial fixing). Where some are held
-/// already, with which these must agree, that takes the place of the last test.
+/// Searches for the integers of all pairs, then of fewer, leaving out the lowest satellite each time (partial fixing).
+/// Agreement with integers that are already held takes the place of the last test.
 pub(super) fn search<const N: usize>(
     estimate: &Gaussian<f64, N>,
     candidates: &[Candidate],

@@ -1,17 +1,18 @@
 use kestirim_gnss_ppp::Carriers;
 
-/// What a satellite adds to its two phases beside whole cycles.
+/// The fractional-cycle biases of a satellite's two phases.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhaseBias {
-    /// To be added to the Melbourne–Wübbena combination, cycles of the wide lane.
+    /// The bias to be added to the Melbourne–Wübbena combination, cycles of the wide lane.
     pub wide_lane: f64,
-    /// To be taken off the ionosphere-free phase, m; zero where the satellite's clock holds it (integer clocks).
+    /// The bias to be subtracted from the ionosphere-free phase, m; zero where the satellite's clock contains it
+    /// (integer clocks).
     pub ionosphere_free: f64,
 }
 
 impl PhaseBias {
-    /// From absolute biases of both phases, m; the codes are free of theirs.
+    /// Converts absolute biases of both phases, m, where the codes are corrected for theirs.
     pub fn absolute(carriers: Carriers, phases: [f64; 2]) -> Self {
         let [of_first, of_second] = carriers.wavelength();
         let [first, second] = phases;
@@ -26,7 +27,7 @@ impl PhaseBias {
 mod tests {
     use super::*;
 
-    /// Without its biases a phase is whole: the wide lane, and what is left for the first carrier.
+    /// Without its biases a phase is an integer: the wide lane, and the remainder on the first carrier.
     #[test]
     fn absolute_biases_leave_whole_cycles() {
         for carriers in [Carriers::L1L2, Carriers::E1E5a] {

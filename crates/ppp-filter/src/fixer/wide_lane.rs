@@ -1,25 +1,26 @@
-//! Wide lanes: the difference of both carriers' whole cycles, from codes and phases averaged.
+//! Wide lanes: the difference of both carriers' integer ambiguities, from averaged codes and phases.
 
 use heapless::Vec;
 use kestirim_gnss_ppp::{Carriers, Constellation};
 
 use crate::Config;
 
-/// For how long the errors of a code stay alike (multipath), s.
+/// The correlation time of code errors (multipath), s.
 const CODE_CORRELATION: f64 = 60.0;
-/// From fewer epochs nothing is said.
+/// The minimum number of epochs in a mean.
 const FEWEST_EPOCHS: u16 = 5;
-/// How far a mean may be from a whole number, cycles; so many of its standard deviations more must be within half a cycle.
+/// The largest distance of a mean from an integer, cycles.
 const FARTHEST: f64 = 0.25;
+/// The distance of a mean from an integer, plus this many standard deviations, must be within half a cycle.
 const DEVIATIONS: f64 = 2.0;
-/// Variance of a mean beside its noise when the receiver's own fraction is looked for, cycles².
+/// The variance added to that of a mean when the receiver's fractional part is estimated, cycles².
 const FLOOR: f64 = 0.01;
 
-/// The running mean of a satellite's wide lane since its phase was begun anew.
+/// The running mean of a satellite's wide lane since its phase was reset.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WideLane {
     pub(super) satellite: u8,
-    /// Sum of the inverse variances, cycles⁻².
+    /// The sum of the inverse variances, cycles⁻².
     weight: f64,
     mean: f64,
     epochs: u16,
@@ -30,22 +31,22 @@ impl WideLane {
         Self { satellite, weight: 0.0, mean: 0.0, epochs: 0 }
     }
 
-    /// Takes in an epoch's, cycles, with its variance.
+    /// Adds the wide lane of an epoch, cycles, with its variance.
     pub(super) fn take(&mut self, cycles: f64, variance: f64) {
         self.epochs = self.epochs.saturating_add(1);
         self.weight += 1.0 / variance;
         self.mean += (cycles - self.mean) / (variance * self.weight);
     }
 
-    /// The mean and its standard deviation, cycles, if there are enough epochs, which come every `interval`, s.
+    /// The mean and its standard deviation, cycles, if there are enough epochs, which are `interval` apart, s.
     pub(super) fn known(&self, interval: f64) -> Option<[f64; 2]> {
         let repeated = 1.0 + 2.0 * CODE_CORRELATION / interval;
         (self.epochs >= FEWEST_EPOCHS).then(|| [self.mean, libm::sqrt(repeated / self.weight)])
     }
 }
 
-/// Variance of an epoch's wide lane at an elevation of which the sine is given, cycles²: of the codes, of which the
-/// ionosphere-free one is three times as noisy as one.
+/// The variance of an epoch's wide lane at an elevation given by its sine, cycles²: that of the codes, of which the
+/// ionosphere-free one is three times as noisy as a single one.
 pub(super) fn variance(config: &Config<impl Sized>, carriers: Carriers, sine: f64) -> f64 {
     let [first, second] = carriers.frequency();
     let one = config.code.variance(sine) / 9.0;
@@ -53,22 +54,22 @@ pub(super) fn variance(config: &Config<impl Sized>, carriers: Carriers, sine: f6
     one * share / (carriers.wide_lane() * carriers.wide_lane())
 }
 
-/// A satellite whose ambiguity may be whole.
+/// A satellite whose ambiguity may be an integer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate {
     pub(super) satellite: u8,
     pub(super) state: usize,
     pub(super) carriers: Carriers,
     pub(super) elevation: f64,
-    /// What its ionosphere-free phase is too long, m.
+    /// The bias by which the ionosphere-free phase is too long, m.
     pub(super) bias: f64,
-    /// Its wide lane, cycles: the mean, then the whole number.
+    /// The wide lane, cycles: first the mean, later the integer.
     pub(super) wide: f64,
-    /// Standard deviation of the mean, cycles.
+    /// The standard deviation of the mean, cycles.
     pub(super) sigma: f64,
 }
 
-/// Those of which the wide lane is a whole number beside the receiver's fraction, which all of a system have in common.
+/// The candidates whose wide lane is an integer apart from the receiver's fractional part, which is common to a system.
 pub(super) fn whole<const N: usize>(candidates: &Vec<Candidate, N>) -> Vec<Candidate, N> {
     let mut whole = Vec::new();
     for system in [Constellation::Gps, Constellation::Galileo] {
@@ -87,7 +88,7 @@ pub(super) fn whole<const N: usize>(candidates: &Vec<Candidate, N>) -> Vec<Candi
             let wide = libm::round(beside);
             let off = (beside - wide).abs();
             if off < FARTHEST && off + DEVIATIONS * candidate.sigma < 0.5 {
-                // There is room for as many as there were.
+                // There is room for as many as there are candidates.
                 let _ = whole.push(Candidate { wide, ..*candidate });
             }
         }
@@ -120,7 +121,7 @@ mod tests {
         }
         let found = whole(&candidates);
         let integers: std::vec::Vec<_> = found.iter().map(|it| (it.satellite, it.wide)).collect();
-        // The fourth is half a cycle off, the fifth is not known well enough.
+        // The fourth is half a cycle off, the fifth is too uncertain.
         assert_eq!(integers, [(1, 7.0), (2, -4.0), (3, 12.0), (101, 3.0), (102, 4.0)]);
     }
 

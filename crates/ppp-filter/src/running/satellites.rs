@@ -1,4 +1,4 @@
-//! Which satellites there are, and which state is whose ambiguity.
+//! The satellites in use, and the assignment of states to ambiguities.
 
 use heapless::Vec;
 use kestirim_gnss_ppp::{Arc, Constellation, Expected, Site, Slip, gradient_mapping};
@@ -13,7 +13,7 @@ use crate::phase_monitor::PhaseMonitor;
 use crate::{Config, SatelliteObservation, Slipped};
 
 impl<const N: usize> Running<N> {
-    /// The satellites above the mask, each with a state for its ambiguity.
+    /// The lines of the satellites above the mask, each with a state for its ambiguity.
     pub(super) fn lines<'a, 'b>(
         &mut self,
         site: &Site<'_>,
@@ -64,7 +64,7 @@ impl<const N: usize> Running<N> {
         lines
     }
 
-    /// Follows a satellite whose ambiguity is `state`. Whether and why that begins anew.
+    /// Tracks a satellite whose ambiguity is `state`. Returns whether and why the ambiguity is reset.
     fn track(
         &mut self,
         state: usize,
@@ -101,7 +101,7 @@ impl<const N: usize> Running<N> {
         slipped
     }
 
-    /// The jump of the phases that most satellites have in common since they were seen before.
+    /// The phase jump that most satellites have in common since they were last seen.
     pub(super) fn clock_jump(
         &self,
         observations: &[SatelliteObservation<'_>],
@@ -116,7 +116,7 @@ impl<const N: usize> Running<N> {
         ClockJump::of(&jumps, median)
     }
 
-    /// Phases without the milliseconds by which they are ahead of the codes, cycles.
+    /// The phases without the milliseconds by which they are ahead of the codes, cycles.
     pub(crate) fn repaired(&self, observation: &SatelliteObservation<'_>) -> [f64; 2] {
         let [first, second] = observation.phase;
         let seconds = 1e-3 * f64::from(self.ahead);
@@ -133,7 +133,7 @@ impl<const N: usize> Running<N> {
         self.channels.get(state)?.as_ref()
     }
 
-    /// The state that is the clock of a system beside that of GPS, begun if there is none.
+    /// The state of a system's clock offset from GPS, allocated if there is none.
     fn offset_state(
         &mut self,
         system: Constellation,
@@ -150,7 +150,7 @@ impl<const N: usize> Running<N> {
         Some(state)
     }
 
-    /// A state that is no satellite's, or that of the satellite unseen for longest.
+    /// A free state, or that of the satellite unseen for longest.
     fn free(&self, observations: &[SatelliteObservation<'_>]) -> Option<usize> {
         let (mut free, mut longest) = (None, 0.0);
         for (state, channel) in self.channels.iter().enumerate().skip(self.first) {

@@ -1,4 +1,4 @@
-//! The filter under a sky without noise: what it must find, and what it must not fall for.
+//! Tests of the filter under a sky without noise: what it must find, and what must not deceive it.
 
 use crate::sky::{START, marker, observe, spoil};
 use core::slice;
@@ -25,7 +25,7 @@ fn step<const N: usize>(
     filter.process(START.plus(seconds), &Receiver::default(), observations)
 }
 
-/// Epochs every half minute up to `until`, as `change` makes them.
+/// Runs epochs every half minute up to `until`, as `change` alters them.
 pub(crate) fn run<const N: usize>(
     filter: &mut PppFilter<N>,
     until: f64,
@@ -69,14 +69,14 @@ fn a_clean_sky_is_fixed_to_millimetres() {
     }
 }
 
-/// From the end, what is known at the first epoch is what the whole run tells, and slips are seen on the way back, too.
+/// Processed backwards, the first epoch is known as well as the whole run determines it, and slips are detected, too.
 #[test]
 fn a_run_is_gone_through_from_its_end() {
     let victim = highest();
     let mut filter = filter(Motion::Static);
     let back = |filter: &mut PppFilter<N>, seconds: f64| {
         let mut observations = observe(seconds, &marker());
-        // A slip after 1800 s, seen as one before, and the gap of a satellite.
+        // A slip after 1800 s, seen before it in this direction, and the gap of a satellite.
         for observation in observations.iter_mut().filter(|it| it.satellite == victim) {
             observation.phase[0] += if seconds > 1800.0 { 100.0 } else { 0.0 };
         }
@@ -151,7 +151,7 @@ fn an_outlier_is_left_out_and_told() {
     assert!(error(&solutions[60]) < 5e-3);
 }
 
-/// A step of a metre that all satellites show is no outlier of any.
+/// A step of a metre that all satellites show is no outlier.
 #[test]
 fn a_step_is_motion() {
     let step = Vector3::new(0.6, -0.6, 0.53);
@@ -167,7 +167,7 @@ fn a_step_is_motion() {
     }
 }
 
-/// A receiver on a fast train is found where it is, though the model is linear.
+/// A receiver on a fast train is found where it is, although the model is linearised.
 #[test]
 fn a_fast_receiver_is_followed() {
     let mut filter = filter(Motion::Kinematic { process_noise: 100.0 });
@@ -207,7 +207,7 @@ fn what_is_no_observation_is_left_out() {
         let mut observations = observe(seconds, &marker());
         let without = observations[1..].to_vec();
         observations[0].phase[1] = f64::NAN;
-        // A satellite twice.
+        // The same satellite twice.
         observations.push(SatelliteObservation { code: [2e7; 2], ..observations[2] });
         let solutions =
             [step(&mut spoilt, seconds, &observations), step(&mut clean, seconds, &without)];
@@ -216,7 +216,7 @@ fn what_is_no_observation_is_left_out() {
             solution.satellites.iter().map(|it| it.satellite).collect::<Vec<_>>()
         };
         assert_eq!(heard(&spoilt), heard(&clean));
-        // The start takes the code without its phase.
+        // The start uses the code without its phase.
         assert!((spoilt.position - clean.position).norm() < 0.02);
     }
 }
@@ -231,7 +231,7 @@ fn more_satellites_than_places() {
     }
 }
 
-/// Ten minutes without an epoch make the position no better.
+/// Ten minutes without an epoch do not improve the position.
 #[test]
 fn a_pause_is_no_knowledge() {
     let mut filter = filter(Motion::Static);
@@ -271,7 +271,7 @@ fn a_satellite_that_was_away_begins_anew() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
-    /// Whatever comes in, there is an error or a number.
+    /// Whatever the input, the result is an error or finite numbers.
     #[test]
     fn nothing_panics(
         changes in prop::collection::vec((0..40_usize, 0..6_usize, any::<f64>(), any::<u8>()), 0..60),
@@ -301,7 +301,8 @@ proptest! {
     }
 }
 
-/// Receivers keep their clock near GPS time by whole milliseconds, and some tell it to the phases or codes alone.
+/// Receivers keep their clock near GPS time by whole milliseconds, and some apply the steps to the phases or codes
+/// alone.
 #[test]
 fn a_millisecond_is_repaired_whatever_the_filter() {
     let milliseconds = |seconds: f64| f64::from(u8::from(seconds >= 1800.0)) * -2e-3;
@@ -330,7 +331,7 @@ fn a_millisecond_is_repaired_whatever_the_filter() {
     }
 }
 
-/// Half a millisecond is no jump of a clock that anybody knows: all ambiguities begin anew.
+/// Half a millisecond is no known clock jump: all ambiguities are reset.
 #[test]
 fn any_other_jump_of_all_phases_is_a_slip_of_all() {
     let config = Config { estimator: Estimator::plain(), ..Config::new(Motion::Static) };
@@ -346,7 +347,7 @@ fn any_other_jump_of_all_phases_is_a_slip_of_all() {
     assert!(solutions.iter().skip(60).all(|it| error(it) < 5e-3));
 }
 
-/// A receiver said to be at rest that is carried off.
+/// A receiver configured to be at rest is carried off.
 #[test]
 fn who_moves_is_not_at_rest() {
     let away = Vector3::new(2.0, -2.0, 1.0);
@@ -366,7 +367,7 @@ fn who_moves_is_not_at_rest() {
     }
 }
 
-/// A troposphere that is 0.8 mm thicker to the north, and 0.6 mm thinner to the east: 2 and 3 cm at 10° of elevation.
+/// A troposphere with gradients of 0.8 mm to the north and −0.6 mm to the east: 2.4 and 1.8 cm at 10° of elevation.
 #[test]
 fn gradients_are_found_where_they_can_be() {
     const GRADIENTS: [f64; 2] = [8e-4, -6e-4];
@@ -389,7 +390,8 @@ fn gradients_are_found_where_they_can_be() {
     let [north, east] = [0, 1].map(|axis| (found.gradients[axis] - GRADIENTS[axis]).abs());
     assert!(north < 5e-5 && east < 5e-5, "{:?}", found.gradients);
     assert!(error(&found) < 2e-3, "{}", error(&found));
-    // Not asked for, behind clocks that are known every quarter of an hour, without room for them.
+    // Gradients are not estimated if not configured, with clocks known every quarter of an hour, or without room for
+    // them.
     let without = Config { gradient: 0.0, ..config };
     for unseen in [slanted::<N>(&without, 30.0), slanted::<N>(&config, 900.0)] {
         assert_eq!(unseen.gradients, [0.0; 2]);

@@ -1,4 +1,4 @@
-//! A filter whose choices are types, beside the one that has them at run time.
+//! Comparison of a filter whose choices are types with one that has them at run time.
 
 use crate::sky::{START, marker, observe, spoil};
 use kestirim_gnss_ppp::Receiver;

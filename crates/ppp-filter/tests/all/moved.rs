@@ -1,4 +1,4 @@
-//! A receiver that is said to rest, and is knocked.
+//! Tests with a receiver that is configured to be at rest, and is knocked.
 
 use crate::filter::{SLOW, error, filter, run};
 use crate::sky::{START, marker, observe};
@@ -6,7 +6,7 @@ use kestirim_gnss_ppp::Receiver;
 use kestirim_ppp_filter::{Contradiction, Health, Motion};
 use nalgebra::Vector3;
 
-/// When it is knocked, s.
+/// When the receiver is knocked, s.
 const KNOCKED: f64 = 1800.0;
 
 #[test]
@@ -46,13 +46,13 @@ fn it_is_found_from_the_end_of_the_run_too() {
     }
 }
 
-/// Phases of four minutes ago say nothing of a motion: delays have changed.
+/// Phases of four minutes ago show no motion: delays have changed.
 #[test]
 fn after_a_gap_changes_are_not_looked_at() {
     let mut filter = filter(Motion::Static);
     for k in (0..=120).filter(|k| !(60..67).contains(k)) {
         let seconds = 30.0 * f64::from(k);
-        // In the gap all delays have changed as if it had been knocked.
+        // In the gap all delays have changed as if the receiver had been knocked.
         let away = Vector3::new(0.0, 0.0, if k < 67 { 0.0 } else { 0.1 });
         let observations = observe(seconds, &(marker() + away));
         let solution = filter

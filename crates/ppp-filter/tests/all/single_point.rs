@@ -1,4 +1,4 @@
-//! Positions from the codes of one epoch each.
+//! Tests of single-epoch positions from codes.
 
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_gnss_ppp::{
@@ -13,10 +13,10 @@ const IONOSPHERE: Klobuchar = Klobuchar {
     alpha: [4.6566e-9, 1.4901e-8, -5.9605e-8, -1.1921e-7],
     beta: [8.192e4, 9.8304e4, -6.5536e4, -5.2429e5],
 };
-/// By what clocks are ahead of that of L1 alone, s.
+/// By how much satellite clocks are ahead of that of L1 alone, s.
 const GROUP_DELAY: f64 = -1.1e-8;
 
-/// The codes of all satellites; of L1 alone with the ionosphere in them if `alone`.
+/// The codes of all satellites; if `alone`, only of L1, with the ionosphere in them.
 fn codes(alone: bool) -> Vec<CodeObservation<'static>> {
     let place = Geodetic::from_ecef(&crate::sky::marker());
     let site = Site::new(&Receiver::default(), &crate::sky::marker(), crate::sky::START);
@@ -25,7 +25,7 @@ fn codes(alone: bool) -> Vec<CodeObservation<'static>> {
         let delay = IONOSPHERE.delay(&place, &expected.direction, crate::sky::START);
         let [first, second] = it.code;
         let ratio = (FREQUENCY[0] / FREQUENCY[1]).powi(2);
-        // The clock is that of the combination, which no group delay changes.
+        // The clock is that of the combination, which the group delay does not change.
         let group = SPEED_OF_LIGHT * GROUP_DELAY;
         Some(CodeObservation {
             satellite: it.satellite,
@@ -51,7 +51,7 @@ fn solve(codes: &[CodeObservation<'_>]) -> Result<Solution<{ states(32) }>, Erro
 fn codes_without_noise_lead_to_the_marker() {
     for alone in [false, true] {
         let solution = solve(&codes(alone)).expect("a position");
-        // The wet delay is one of another climate.
+        // The wet delay is that of another climate.
         assert!((solution.position - crate::sky::marker()).norm() < 0.5, "{}", solution.position);
         assert_eq!(solution.health, Health::Converging);
         let [east, north, up] = solution.deviations_enu();
@@ -88,7 +88,7 @@ fn a_worse_accuracy_is_told() {
 #[test]
 fn antennas_of_satellites_count() {
     let without = solve(&codes(false)).expect("a position");
-    // Two metres from the centre of mass towards the Earth.
+    // The antenna is two metres from the centre of mass towards the Earth.
     let pattern = Pattern {
         offset: [0.0, 0.0, 2.0],
         first: 0.0,
@@ -101,7 +101,7 @@ fn antennas_of_satellites_count() {
         .map(|it| CodeObservation { antenna: Some([pattern; 2]), ..it })
         .collect();
     let with = solve(&with).expect("a position");
-    // All ranges are shorter by nearly as much, and so is what the clock makes of them.
+    // All ranges are shorter by nearly as much, which appears in the clock.
     assert!((with.clock - without.clock - 2.0).abs() < 0.5, "{} {}", with.clock, without.clock);
 }
 
@@ -132,7 +132,7 @@ fn each_system_has_a_clock_of_its_own() {
     }
     let solution = solve(&codes).expect("a position");
     assert!(others > 4 && (solution.position - crate::sky::marker()).norm() < 1.5);
-    // Three coordinates and three clocks take more than six satellites to be checked, of those above the mask.
+    // Three coordinates and three clocks need more than six satellites above the mask for a check.
     codes.retain(|it| solution.satellites.iter().any(|report| report.satellite == it.satellite));
     let few = codes.get(..6).expect("six satellites");
     let few = solve(few).expect("a position");
@@ -141,7 +141,7 @@ fn each_system_has_a_clock_of_its_own() {
     assert_eq!(solve(fewer).err(), Some(Error::TooFewSatellites));
 }
 
-/// Noise that was not said makes σ larger, and codes that contradict each other a contradiction.
+/// Unexpected noise enlarges σ, and codes that contradict each other cause a contradiction.
 #[test]
 fn codes_that_do_not_fit_are_told() {
     let clean = solve(&codes(false)).expect("a position");

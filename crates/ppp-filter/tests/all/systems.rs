@@ -1,4 +1,4 @@
-//! The filter under satellites of several systems, each with a clock of its own.
+//! Tests of the filter with satellites of several systems, each with a clock of its own.
 
 use crate::filter::{SLOW, error, filter, run};
 use crate::sky::{START, marker};
@@ -6,7 +6,7 @@ use kestirim_gnss_ppp::{Carriers, Constellation, Receiver, Site};
 use kestirim_ppp_filter::{Config, Motion, PppFilter, SatelliteObservation, states};
 use nalgebra::Vector3;
 
-/// Half of the sky is Galileo's, whose clocks the receiver sees 30 m away.
+/// Half of the satellites are of Galileo, whose clocks the receiver sees with an offset of 30 m.
 #[test]
 fn galileo_beside_gps() {
     let as_galileo = |observations: &mut Vec<SatelliteObservation<'static>>, all: bool| {
@@ -39,8 +39,8 @@ fn galileo_beside_gps() {
     }
 }
 
-/// What the receiver would observe if a third of the satellites were of GLONASS and a third of BeiDou, whose clocks it saw
-/// elsewhere, and if each satellite's codes of these were off by metres of their own.
+/// Changes the observations as if a third of the satellites were of GLONASS and a third of BeiDou, with clock offsets,
+/// and with codes that are off by metres for each satellite of these systems.
 fn of_three_systems(observations: &mut [SatelliteObservation<'static>]) {
     for observation in observations {
         let number = observation.satellite;
@@ -65,7 +65,7 @@ fn three_systems_have_clocks_of_their_own() {
         let all = run(&mut filter(motion), 3600.0, |_, seen| of_three_systems(seen));
         let last = all.last().unwrap();
         assert!(error(last) < 2e-2, "{}", error(last));
-        // Without GPS from some time on, and from the beginning.
+        // Without GPS from some time on, or from the beginning.
         for from in [1800.0, -1.0] {
             let lost = |seconds: f64, observations: &mut Vec<_>| {
                 of_three_systems(observations);
@@ -74,7 +74,7 @@ fn three_systems_have_clocks_of_their_own() {
                 });
             };
             let few = run(&mut filter(motion), 3600.0, lost);
-            // Five satellites on two clocks do not know it better.
+            // Five satellites on two clocks do not improve it.
             let last = few.last().unwrap();
             let deviation = Vector3::from(last.deviations_enu()).norm();
             assert!(error(last) < 2.0 * deviation, "{from}: {} {deviation}", error(last));
@@ -82,13 +82,14 @@ fn three_systems_have_clocks_of_their_own() {
     }
 }
 
-/// A filter that GPS fills but for one state has no room for the first satellite of another system; once it has, that serves as any.
+/// A filter that GPS fills except for one state has no room for the first satellite of another system; once it has,
+/// that satellite is used like any other.
 #[test]
 fn a_system_without_room_begins_when_there_is_some() {
     const SEEN: usize = 9;
     let config = Config { gradient: 0.0, ..Config::new(Motion::Static) };
     let mut full = PppFilter::<{ states(SEEN) }>::new(config);
-    // The last one is of GLONASS, and the first one goes after a while.
+    // The last satellite is of GLONASS, and the first one disappears after a while.
     let solutions = run(&mut full, 1800.0, |seconds, observations| {
         let is_high = |it: &SatelliteObservation<'_>| {
             let site = Site::new(&Receiver::default(), &marker(), START.plus(seconds));

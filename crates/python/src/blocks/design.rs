@@ -9,7 +9,7 @@ use super::{matrix, numbers, too_many};
 use crate::arrays::{Results, Table, values};
 use crate::error::{refused, unknown};
 
-/// A function of two numbers, called with numbers that are known when it runs.
+/// Calls a function that is generic over two numbers with numbers that are only known at run time.
 macro_rules! of_sizes {
     ($what:literal, $sizes:expr, [$(($n:literal $($p:literal)*))*], $function:ident $arguments:tt) => {
         match $sizes {
@@ -25,7 +25,7 @@ fn sizes(square: &[f64], other: &[f64]) -> (usize, usize) {
     (states, other.len() / states.max(1))
 }
 
-/// A gain by rows, and the poles that it places.
+/// A gain, row by row, and the poles that it places.
 type Placed = (Vec<f64>, Vec<(f64, f64)>);
 
 /// L that places the eigenvalues of A − L C, and those that it really places.

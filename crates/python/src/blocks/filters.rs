@@ -1,4 +1,4 @@
-//! Kalman filters of a linear model: plain, adaptive, robust.
+//! Kalman filters with a linear model: plain, adaptive, robust.
 
 mod adaptive;
 mod plain;
@@ -18,16 +18,16 @@ use super::{matrix, of_size};
 use crate::arrays::{Line, Results, Table, values};
 use crate::error::{KestirimError, refused, refused_at, unknown};
 
-/// Most measurements at a time.
+/// The largest number of measurements at a time.
 const MOST: usize = 12;
 
-/// What there is to know of a model.
+/// The transition and the process noise of a model.
 struct Model<const N: usize> {
     f: SMatrix<f64, N, N>,
     q: Covariance<f64, N>,
 }
 
-/// A row of H: those of its entries that are not zero.
+/// A row of H, as its nonzero entries.
 type Row = Vec<(usize, f64)>;
 
 fn row_of(numbers: &[f64]) -> Row {
@@ -38,14 +38,14 @@ fn expected(row: &Row, mean: &[f64]) -> f64 {
     row.iter().map(|(index, number)| number * mean[*index]).sum()
 }
 
-/// What is written down of a step.
+/// The recorded results of the steps.
 #[derive(Default)]
 struct Record {
     x: Vec<f64>,
     p: Vec<f64>,
     innovation: Vec<f64>,
     nis: Vec<f64>,
-    /// Of the adaptive filter: R and Q; of the robust one: weights.
+    /// Results of one kind of filter: R and Q of the adaptive one, or weights of the robust one.
     first: Vec<f64>,
     second: Vec<f64>,
 }
@@ -62,25 +62,25 @@ impl Record {
     }
 }
 
-/// What became of the measurements of a time: their NIS.
+/// The result of an update: the NIS of its measurements.
 type Answer = Result<f64, PyErr>;
 
 /// A filter of any number of states.
 trait AnyFilter: Send + Sync {
     fn predict(&mut self) -> PyResult<()>;
-    /// Takes innovations z − H x⁻ (not a number where nothing was measured) with their rows.
+    /// Updates with innovations z − H x⁻ (NaN where nothing was measured) and their rows.
     fn correct(&mut self, rows: &[Row], innovation: &[f64]) -> Answer;
     fn mean(&self) -> &[f64];
-    /// Adds the rows of P.
+    /// Appends the rows of P.
     fn add_covariance(&self, rows: &mut Vec<f64>);
-    /// What is particular about the filter now.
+    /// Appends the results that are specific to this kind of filter.
     fn tell(&self, measurements: usize, first: &mut Vec<f64>, second: &mut Vec<f64>);
     fn copy(&self) -> Box<dyn AnyFilter>;
     fn kind(&self) -> &'static str;
     fn snapshot(&self, made_for: &str) -> PyResult<Vec<u8>>;
     fn restore(&mut self, bytes: &[u8], made_for: &str) -> PyResult<()>;
 
-    /// Predicts and updates with rows of measurements; the sample that was refused, and why.
+    /// Predicts and updates with each row of measurements; on failure, the index of the refused sample and the error.
     fn run(&mut self, rows: &[Row], zs: &[f64]) -> Result<Record, (usize, PyErr)> {
         let (states, measurements) = (self.mean().len(), rows.len());
         let mut record = Record::with_room_for(zs.len() / measurements, states, measurements);
@@ -99,13 +99,13 @@ trait AnyFilter: Send + Sync {
     }
 }
 
-/// What belongs to each kind of filter.
+/// The parameters of the different kinds of filters.
 struct Kind<'a> {
     name: &'a str,
-    /// Of the adaptive filter: α; least and most of R and of Q.
+    /// Parameters of the adaptive filter: α; the least and largest values of R and of Q.
     forgetting: f64,
     limits: [f64; 4],
-    /// Of the robust one.
+    /// The method of the robust filter.
     method: &'a str,
 }
 
@@ -262,7 +262,7 @@ impl Filter {
 }
 
 impl Filter {
-    /// What a snapshot says beside the number of states.
+    /// The description that a snapshot contains in addition to the number of states.
     fn made_for(&self) -> String {
         format!("a {} filter, measurements: {}", self.filter.kind(), self.rows.len())
     }

@@ -10,7 +10,7 @@ use super::{matrix, of_size, too_many};
 use crate::arrays::{Results, Table, values};
 use crate::error::{refused, refused_at};
 
-/// Most inputs and most outputs: columns and rows of zeros beyond those that there are change nothing.
+/// The largest number of inputs and of outputs: additional columns and rows of zeros change nothing.
 const MOST: usize = 4;
 
 /// An observer of any number of states.
@@ -160,7 +160,7 @@ impl Observer {
 }
 
 impl Observer {
-    /// What a snapshot says beside the number of states.
+    /// The description that a snapshot contains in addition to the number of states.
     fn made_for(&self) -> String {
         format!("an observer, inputs: {}, outputs: {}", self.inputs, self.outputs)
     }

@@ -1,4 +1,4 @@
-//! A particle filter.
+//! The particle filter.
 
 use std::cell::Cell;
 
@@ -15,10 +15,10 @@ use super::sleep::{loaded, stored};
 use crate::arrays::{Line, Table, values};
 use crate::error::{KestirimError, refused, unknown};
 
-/// Most particles.
+/// The largest number of particles.
 const MOST: usize = 8192;
 
-/// A cloud that sleeps with its generator: it draws the same numbers when it wakes.
+/// A cloud stored with its generator, so that it draws the same numbers when it is restored.
 #[derive(Serialize, Deserialize)]
 struct Drawn<const D: usize> {
     cloud: Particles<f64, D, MOST>,
@@ -29,7 +29,7 @@ kestirim_snapshot::layout! {
     [const D: usize] for Drawn<D> as "particles/drawn", <Particles<f64, D, MOST> as Layout>::VERSION, f64, [D, MOST], infinite
 }
 
-/// What a snapshot says beside the number of coordinates.
+/// The description that a snapshot contains in addition to the number of coordinates.
 fn made_for(count: usize) -> String {
     format!("a cloud of {count} particles")
 }
@@ -40,7 +40,7 @@ trait AnyCloud: Send + Sync {
     fn states(&self) -> Vec<f64>;
     fn weights(&self) -> Vec<f64>;
     fn effective(&self) -> f64;
-    /// Mean and covariance.
+    /// The mean and the covariance.
     fn moments(&self) -> (Vec<f64>, Vec<f64>);
     fn move_to(&mut self, states: &[f64], rng: &mut Xoshiro256PlusPlus);
     fn update(&mut self, logs: &[f64]) -> PyResult<(f64, f64)>;
@@ -48,7 +48,7 @@ trait AnyCloud: Send + Sync {
     fn jitter(&mut self, deviation: &[f64], rng: &mut Xoshiro256PlusPlus);
     fn regularise(&mut self, scale: f64, rng: &mut Xoshiro256PlusPlus) -> PyResult<()>;
     fn snapshot(&self, rng: &Xoshiro256PlusPlus) -> PyResult<Vec<u8>>;
-    /// Answers with the generator.
+    /// Restores the cloud and returns the generator.
     fn restore(&mut self, bytes: &[u8]) -> PyResult<Xoshiro256PlusPlus>;
 }
 

@@ -1,4 +1,4 @@
-//! Estimators that sleep: their state in bytes.
+//! Snapshots of estimators: their state in bytes.
 
 use kestirim_snapshot::{Layout, Name, Number};
 use pyo3::PyResult;
@@ -7,14 +7,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{KestirimError, refused};
 
-/// An estimator and what it was made for, such as 2 measurements: more than its layout says, which has room for more.
+/// An estimator with a description of its sizes, such as 2 measurements: its layout does not tell these, as it has room
+/// for more.
 #[derive(Serialize, Deserialize)]
 struct Asleep<E> {
     made_for: String,
     estimator: E,
 }
 
-/// The estimator's, but for a mark: a snapshot that Rust or C made is another.
+/// The estimator's layout, except for a mark: snapshots made by Rust or C differ.
 impl<E: Layout> Layout for Asleep<E> {
     const NAME: &'static str = E::NAME;
     const VERSION: u16 = E::VERSION;
@@ -30,7 +31,7 @@ impl<E: Layout> Layout for Asleep<E> {
     }
 }
 
-/// The state of an estimator, in bytes that say what they are.
+/// Stores an estimator in self-describing bytes.
 pub(super) fn stored<E: Layout + Serialize>(estimator: E, made_for: &str) -> PyResult<Vec<u8>> {
     let asleep = Asleep { made_for: made_for.to_owned(), estimator };
     let mut bytes = vec![0; kestirim_snapshot::size(&asleep).map_err(refused)?];
@@ -38,7 +39,7 @@ pub(super) fn stored<E: Layout + Serialize>(estimator: E, made_for: &str) -> PyR
     Ok(bytes)
 }
 
-/// An estimator from such bytes; those of another kind or size are refused.
+/// Restores an estimator from such bytes; those of another kind or size are refused.
 pub(super) fn loaded<E: Layout + Serialize + DeserializeOwned>(
     bytes: &[u8],
     made_for: &str,

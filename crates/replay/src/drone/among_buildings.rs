@@ -1,4 +1,4 @@
-//! Through the thesis' channel, with as much more shadowing as the measurements show.
+//! Search through the thesis' channel, with as much additional shadowing as the measurements show.
 
 use kestirim_air_to_ground::{Channel, Measurement};
 use kestirim_particle_filter::Region;
@@ -8,44 +8,45 @@ use rayon::prelude::*;
 use super::search::CALIBRATION_DB;
 use super::{Cloud, EnvironmentKind, Estimate, MOST, MOST_CORNERS, POINTS, Quantity, Search};
 
-/// Levels of the transmitter that are thought possible about the nominal one, dB.
+/// The range of possible transmitter levels on either side of the nominal one, dB.
 const LEVELS_DB: f64 = 100.0;
-/// How many levels stand for all.
+/// The number of levels over which the density is summed.
 const LEVELS: u32 = 41;
-/// Path losses that are off by no more than so many calibrations are thought possible.
+/// The range of possible common errors of path losses, in standard deviations of the calibration.
 const LIKELY: f64 = 2.0;
-/// Least deviations of a measurement that are as likely as the thesis' own (a tenth of a decibel below the drone, which no
-/// radio measures), dB.
+/// Lower limits of the standard deviation of a measurement that are considered in addition to the thesis' own (a tenth
+/// of a decibel below the drone, which no radio measures), dB.
 const LEAST_SIGMAS_DB: [f64; 3] = [1.0, 2.0, 4.0];
 
-/// Of a deviation that counts for less, and of points that weigh so much less than the heaviest (as a logarithm), no region knows.
+/// The share below which a hypothesis does not enter the credible region; points lighter than the heaviest by `LIGHT`
+/// (as a logarithm) do not either.
 const LEAST_SHARE: f64 = 0.01;
 const LIGHT: f64 = -12.0;
-/// Path losses that are all off by so much are at the end of what is thought possible, dB.
+/// The common error of path losses that is at the edge of what is considered possible, dB.
 pub(super) const FAR_OFF_DB: f64 = 0.8 * LIKELY * CALIBRATION_DB;
 
-/// The thesis' channel to users within an area.
+/// The thesis' channel for users within an area.
 type ChannelWithin<'a> = Within<'a, f64, Channel<f64>, MOST_CORNERS>;
-/// A user in the plane, and by how many dB all path losses are off.
+/// A locator of a user in the plane, with the common error of all path losses, dB, as third coordinate.
 type UserLocator<'a> = Locator<f64, POINTS, MOST, 3, ChannelWithin<'a>>;
 
-/// A user who is looked for with one deviation of the measurements.
+/// A search that assumes one lower limit of the measurements' standard deviation.
 #[derive(Debug)]
 struct Hypothesis<'a> {
     locator: Box<UserLocator<'a>>,
-    /// Logarithm of the density of all that was measured, without a constant.
+    /// Logarithm of the density of all measurements, up to a constant.
     evidence: f64,
 }
 
-/// What all of them believe.
+/// The combined belief of all hypotheses.
 struct Believed<'h, 'a> {
     hypotheses: &'h [Hypothesis<'a>],
-    /// What each of them counts for; the sum is 1.
+    /// The weight of each hypothesis; they sum to 1.
     shares: Vec<f64>,
 }
 
 impl Search<'_> {
-    /// Through the thesis' channel.
+    /// Estimates through the thesis' channel.
     pub(super) fn among_buildings(
         &self,
         environment: EnvironmentKind,
@@ -75,7 +76,7 @@ impl Search<'_> {
             let Some(measurement) = self.measurement(stop) else { continue };
             let taken: Vec<bool> =
                 hypotheses.par_iter_mut().map(|it| it.measure(&measurement)).collect();
-            // What none of them explains is left out.
+            // A measurement that no hypothesis explains is left out.
             if !taken.contains(&true) {
                 continue;
             }
@@ -93,7 +94,7 @@ impl Search<'_> {
                 stop: number,
                 place: self.outward([x, y]),
                 sd_m: along.hypot(across),
-                // A level received is the negative loss: the more the transmitter sends, the less.
+                // A received level is the negative loss: the more the transmitter sends, the smaller the loss.
                 level_db: (quantity == Quantity::Level).then_some(-off_db),
                 off_db,
                 covered: truth.and_then(|truth| believed.covers(self.inward(*truth))),
@@ -106,7 +107,7 @@ impl Search<'_> {
 }
 
 impl Hypothesis<'_> {
-    /// Takes in a measurement; whether some place explains it.
+    /// Takes in a measurement; returns whether some place explains it.
     fn measure(&mut self, measurement: &Measurement<f64>) -> bool {
         let is_taken = self.locator.measure(measurement).is_ok();
         if is_taken {
@@ -115,7 +116,7 @@ impl Hypothesis<'_> {
         is_taken
     }
 
-    /// The mean of the likelihood over all places: where the lattice is not, it is nothing.
+    /// Updates the evidence: the mean of the likelihood over all places, which is zero outside the lattice.
     fn weigh(&mut self) {
         let posterior = self.locator.posterior();
         let volume: f64 = posterior.region().width().iter().product();
@@ -138,7 +139,7 @@ impl<'h, 'a> Believed<'h, 'a> {
         self.hypotheses.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))
     }
 
-    /// Mean and deviations of the place and of the level.
+    /// Means and standard deviations of the place and of the level.
     fn moments(&self) -> ([f64; 3], [f64; 3]) {
         let all: Vec<_> = self.hypotheses.iter().map(|it| it.locator.moments()).collect();
         let sum = |of: &dyn Fn(usize) -> f64| -> f64 {
@@ -154,8 +155,8 @@ impl<'h, 'a> Believed<'h, 'a> {
         (mean, deviation)
     }
 
-    /// Whether the 90 % region of places holds the true one. The level, the third coordinate, is integrated over: nobody
-    /// knows the true one.
+    /// Whether the 90 % region of places holds the true one. The level, the third coordinate, is integrated out, as the
+    /// true one is unknown.
     fn covers(&self, truth: [f64; 2]) -> Option<bool> {
         let ([.., level], [.., deviation]) = self.moments();
         let levels = (0..LEVELS)
@@ -176,7 +177,7 @@ impl<'h, 'a> Believed<'h, 'a> {
             let states = (0..posterior.len())
                 .filter_map(|index| posterior.point(index).zip(posterior.log_weights().get(index)));
             let heavy = states.filter(|(_, log_weight)| **log_weight > LIGHT);
-            // As many of all of them as of one.
+            // All hypotheses together contribute as many points as a single one would.
             let some = heavy.step_by(counting.len());
             places.extend(some.map(|([x, y, _], log)| ([x, y], *share * (log - all).exp())));
         }
@@ -193,7 +194,7 @@ impl<'h, 'a> Believed<'h, 'a> {
     }
 }
 
-/// Adds up exponentials of logarithms, as a logarithm.
+/// The logarithm of the sum of exponentials.
 fn log_sum(logs: impl Iterator<Item = f64>) -> f64 {
     let logs: Vec<f64> = logs.collect();
     let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);

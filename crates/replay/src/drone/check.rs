@@ -1,4 +1,4 @@
-//! What a recorded flight shows before the user is searched.
+//! Checks of a recorded flight before the user is searched for.
 
 use kestirim_health::Reason;
 
@@ -6,10 +6,11 @@ use super::{Quantity, Stop};
 use crate::Finding;
 use crate::metrics::{median, standard_deviation};
 
-/// So many measurements in a row with the same level, to the last digit, while the drone moves: the radio is stuck.
+/// The number of measurements in a row with the same level, to the last digit, while the drone moves, from which on the
+/// radio is stuck.
 const STUCK: usize = 8;
 
-/// What the measurements show; besides, so many lines were unusable.
+/// The findings about the measurements, of which `unusable` lines had to be left out.
 pub fn check(stops: &[Stop], quantity: Quantity, unusable: usize) -> Vec<Finding> {
     let heights: Vec<f64> = stops.iter().map(|stop| stop.height).collect();
     let losses: Vec<f64> = stops.iter().map(|stop| stop.loss).collect();
@@ -36,7 +37,7 @@ pub fn check(stops: &[Stop], quantity: Quantity, unusable: usize) -> Vec<Finding
         let found = format!("{unusable} lines without a height or a level");
         findings.push(Finding::note("missing", found));
     }
-    // What comes before the sign of a received level: −30 to −140 dBm.
+    // A received level, of −30 to −140 dBm, given as a path loss.
     let positive = losses.iter().filter(|loss| **loss < 0.0).count();
     if quantity == Quantity::PathLoss && positive * 2 > losses.len() {
         findings.push(Finding::fault(

@@ -1,4 +1,4 @@
-//! What a filter believes, as it can be drawn.
+//! The belief of a filter, in a form that can be drawn.
 
 use kestirim_particle_filter::{Moments, Particles, PointMass};
 use kestirim_scalar::Scalar;
@@ -6,41 +6,41 @@ use kestirim_scalar::Scalar;
 use super::Region;
 use super::density::Weighed;
 
-/// Share of the weight that the heaviest carry; the others are drawn apart.
+/// The share of the weight that the heaviest places carry; the others are drawn differently.
 const SHARE: f64 = 0.9;
-/// Points of an ellipse.
+/// The number of points of an ellipse.
 const CORNERS: u32 = 64;
-/// Most particles of each kind that are drawn.
+/// The largest number of particles of each kind that are drawn.
 const MOST: usize = 1500;
-/// Most particles from which a region is made.
+/// The largest number of particles from which a region is computed.
 const MOST_OF_REGION: usize = 1500;
-/// Places of equal weight that stand for all.
+/// The number of equally weighted places in the sample.
 const SAMPLE: usize = 240;
 
-/// Particles or lattice points, and the ellipse that stands for them.
+/// Particles or lattice points, and the ellipse that approximates them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cloud {
     /// The heaviest places, which carry nine tenths of the weight, m.
     pub heavy: Vec<[f32; 2]>,
-    /// The others, m.
+    /// The other places, m.
     pub light: Vec<[f32; 2]>,
     /// The mean, m.
     pub mean: [f64; 2],
-    /// Lower triangular, F Fᵀ is the covariance, m.
+    /// The lower triangular factor F of the covariance F Fᵀ, m.
     pub factor: [[f64; 2]; 2],
-    /// Effective number of particles.
+    /// The effective number of particles.
     pub effective: f64,
-    /// A few places that all weigh the same, drawn by systematic resampling without chance, m.
+    /// A few places of equal weight, drawn by systematic resampling without randomness, m.
     pub sample: Vec<[f32; 2]>,
-    /// Places and weights from which its region is made, before they were moved, and where they were moved.
+    /// The places and weights from which the region is computed, before they were moved by `moved`.
     points: Vec<([f32; 2], f32)>,
     moved: [f64; 2],
-    /// Area of each point of a lattice, m².
+    /// The area for each point of a lattice, m².
     room: Option<f64>,
 }
 
 impl Cloud {
-    /// Of particles whose first two coordinates are a place.
+    /// The cloud of particles whose first two coordinates are a place.
     pub fn of_particles<T: Scalar, const D: usize, const N: usize>(
         particles: &Particles<T, D, N>,
         effective: f64,
@@ -50,13 +50,13 @@ impl Cloud {
         Self::new(states, particles.log_weights(), &moments, effective, None)
     }
 
-    /// Of the points of a lattice likewise.
+    /// The cloud of the points of a lattice whose first two coordinates are a place.
     pub fn of_lattice<T: Scalar, const D: usize, const N: usize>(
         lattice: &PointMass<T, D, N>,
     ) -> Self {
         let points = (0..lattice.len()).filter_map(|index| lattice.point(index));
         let effective = lattice.effective().to_f64();
-        // Points of a space of more dimensions lie at random in the plane.
+        // Points of a space with more dimensions lie at random in the plane.
         let size = || lattice.region().width().iter().map(|side| side.to_f64()).product::<f64>();
         let room = (D == 2).then(|| size() / lattice.len() as f64);
         Self::new(points, lattice.log_weights(), &lattice.moments(), effective, room)
@@ -81,7 +81,7 @@ impl Cloud {
         let (mean, factor) = (moments.mean(), moments.factor());
         let factor = [0, 1].map(|row| [factor[row][0].to_f64(), factor[row][1].to_f64()]);
         let mean = [mean[0].to_f64(), mean[1].to_f64()];
-        // One of several particles is like another; of a lattice they are not.
+        // Particles are interchangeable, so some can be skipped; points of a lattice are not.
         let stride = if room.is_some() { 1 } else { points.len().div_ceil(MOST_OF_REGION).max(1) };
         let few = points.iter().step_by(stride);
         Self {
@@ -97,7 +97,7 @@ impl Cloud {
         }
     }
 
-    /// The same, as many metres further to the east and north.
+    /// Moves the cloud to the east and north, m.
     pub fn moved(mut self, by: [f64; 2]) -> Self {
         for place in self.heavy.iter_mut().chain(&mut self.light).chain(&mut self.sample) {
             *place = [place[0] + by[0] as f32, place[1] + by[1] as f32];
@@ -107,7 +107,7 @@ impl Cloud {
         self
     }
 
-    /// Where nine tenths of the weight are, and how much is known.
+    /// The region that holds nine tenths of the weight, and how much is known.
     pub fn region(&self) -> Region {
         let back = |places: [f64; 2]| [0, 1].map(|axis| places[axis] - self.moved[axis]);
         let points: Vec<Weighed> =
@@ -126,7 +126,7 @@ impl Cloud {
         self.factor.iter().flatten().fold(0.0, |sum: f64, part| sum.hypot(*part))
     }
 
-    /// Where nine of ten of a normal distribution in the plane are: so many deviations, √(−2 ln 0.1).
+    /// The radius that holds nine tenths of a normal distribution in the plane, in standard deviations: √(−2 ln 0.1).
     fn reach() -> f64 {
         (-2.0 * 0.1_f64.ln()).sqrt()
     }
@@ -137,7 +137,7 @@ impl Cloud {
         std::f64::consts::PI * Self::reach().powi(2) * (a * b).abs()
     }
 
-    /// The border of where nine of ten would be if it were normally distributed, closed, m.
+    /// The border, closed, of the region that would hold nine tenths of the weight if it were normally distributed, m.
     pub fn ellipse(&self) -> impl Iterator<Item = [f64; 2]> {
         let reach = Self::reach();
         let ([x, y], factor) = (self.mean, self.factor);
@@ -150,7 +150,7 @@ impl Cloud {
     }
 }
 
-/// The smallest logarithm among the heaviest; those that weigh as much belong to them, too.
+/// The smallest logarithmic weight among the heaviest points, which include all that weigh as much.
 fn least_of_the_heaviest(mut logs: Vec<f64>) -> f64 {
     logs.sort_by(|a, b| b.total_cmp(a));
     let all: f64 = logs.iter().map(|log| log.exp()).sum();
@@ -162,7 +162,7 @@ fn least_of_the_heaviest(mut logs: Vec<f64>) -> f64 {
     last.copied().unwrap_or(f64::NEG_INFINITY)
 }
 
-/// As many of each as its weight says.
+/// Draws each place as often as its weight says.
 fn sampled(points: &[Weighed]) -> Vec<[f32; 2]> {
     let all: f64 = points.iter().map(|(_, weight)| weight).sum();
     let step = all / SAMPLE as f64;
@@ -176,7 +176,7 @@ fn sampled(points: &[Weighed]) -> Vec<[f32; 2]> {
     sample
 }
 
-/// Every so manieth.
+/// Thins the places evenly to at most `MOST`.
 fn thinned(places: &[[f32; 2]]) -> Vec<[f32; 2]> {
     places.iter().step_by(places.len().div_ceil(MOST).max(1)).copied().collect()
 }

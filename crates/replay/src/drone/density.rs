@@ -1,48 +1,49 @@
 //! The density of a cloud: how much is known, and the smallest region that holds nine tenths.
 
-/// Cells along each axis.
+/// The number of cells along each axis.
 const CELLS: usize = 40;
-/// Beyond the middle of the last cell a weight is not counted.
+/// The middle of the last cell, in cells from the middle of the first: weights beyond it are not counted.
 const END_OF_CELLS: f64 = (CELLS - 1) as f64;
-/// So many standard deviations from the mean are looked at.
+/// The reach of the grid from the mean, in standard deviations.
 const REACH: f64 = 4.0;
-/// Widths of the kernel that are tried, in those of Scott's rule for each axis, which is right for one clump …
+/// The wider kernels that are tried, relative to Scott's rule for each axis, which is right for a single clump.
 const WIDE: [f64; 2] = [1.0, 0.6];
-/// … and, alike along both axes, in that of the longer one, for rings and several clumps.
+/// The narrower kernels that are tried, for rings and several clumps: equal along both axes, relative to Scott's rule
+/// for the longer one.
 const NARROW: [f64; 3] = [0.36, 0.2, 0.1];
-/// Width of the kernel of a lattice's points, in sides of the room that each has.
+/// The kernel width for points of a lattice, in side lengths of the area of each point.
 const ROOM: f64 = 0.6;
-/// A kernel ends after so many of its deviations.
+/// The reach of a kernel, in its standard deviations.
 const END: f64 = 2.5;
-/// Points that judge a width.
+/// The largest number of points by which a width is judged.
 const JUDGES: usize = 256;
-/// Times that the stretch in which the border's density lies is halved.
+/// The number of times that the interval containing the border's density is halved.
 const HALVINGS: usize = 12;
-/// Beside the largest, smaller weights are none.
+/// Weights below this share of the largest count as zero.
 const LEAST: f64 = 1e-9;
 
 /// A place, m, and its weight.
 pub(super) type Weighed = ([f64; 2], f64);
 
-/// What can be told of a density in the plane.
+/// The summary of a density in the plane.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Region {
     /// Differential entropy −∫ p log₂(p · 1 m²), bits.
     pub entropy_bits: f64,
-    /// Area of the smallest region that holds the asked share, m².
+    /// Area of the smallest region that holds the requested share, m².
     pub area_m2: f64,
-    /// Its border: the ends of short straight lines, in no order, m.
+    /// The border of that region: the ends of short straight lines, in no order, m.
     pub border: Vec<[[f64; 2]; 2]>,
 }
 
 impl Region {
     /// The smallest region that holds `share` of the weight, which is positive somewhere.
     ///
-    /// Weights are counted in cells and smoothed by a normal kernel (Silverman, *Density Estimation*, 1986, ch. 4). Of points that
-    /// chance has placed that one of five widths counts by which they expect each other best (likelihood
-    /// cross-validation, Duin, IEEE Trans. Computers 25 (1976)): so it holds for rings and several clumps, too. Points of
-    /// a lattice each have so much `room` (m²), and their kernel is as wide. Particles seem
-    /// spread over more than they are; small clumps far from each other, of which a cell is a good part, most of all.
+    /// Weights are counted in cells and smoothed by a normal kernel (Silverman, *Density Estimation*, 1986, ch. 4). For
+    /// randomly placed points, the one of five widths is taken with which they predict each other best (likelihood
+    /// cross-validation, Duin, IEEE Trans. Computers 25 (1976)), so it suits rings and several clumps, too. Points of a
+    /// lattice each have an area `room` (m²), and their kernel is as wide. Particles seem to be spread over a larger
+    /// area than they are, most of all in small clumps far from each other, where a cell is a good part of a clump.
     pub(super) fn of(
         points: &[Weighed],
         mean: [f64; 2],
@@ -58,7 +59,7 @@ impl Region {
             *weight /= all;
         }
         let effective = 1.0 / points.iter().map(|(_, weight)| weight * weight).sum::<f64>();
-        // A cloud that is a single place still has some room.
+        // A cloud that is a single place still has some extent.
         let scott = deviation.map(|sigma| sigma.max(1e-3) * effective.powf(-1.0 / 6.0));
         let widths = if let Some(room) = room {
             vec![[ROOM * room.sqrt(); 2]]
@@ -82,7 +83,7 @@ impl Region {
 /// Cells over the part of the plane where the weight is.
 struct Grid {
     low: [f64; 2],
-    /// Of a cell.
+    /// The side lengths of a cell, m.
     side: [f64; 2],
 }
 
@@ -105,7 +106,7 @@ impl Grid {
         Some(along(1)? * CELLS + along(0)?)
     }
 
-    /// Each weight on the four cells about its place, the nearer the more.
+    /// Distributes each weight over the four cells around its place, more to the nearer ones.
     fn counted(&self, points: &[Weighed]) -> Vec<f64> {
         let mut cells = vec![0.0; CELLS * CELLS];
         for (place, weight) in points {
@@ -123,7 +124,7 @@ impl Grid {
         cells
     }
 
-    /// Mean logarithm of the density that the other points expect at each.
+    /// The mean logarithm of the density that the other points predict at each point.
     fn support(&self, points: &[Weighed], smooth: &[f64], own: f64) -> f64 {
         let judges = points.iter().step_by(points.len().div_ceil(JUDGES).max(1));
         let told = judges.filter_map(|(place, weight)| {
@@ -150,9 +151,9 @@ impl Grid {
         Region { entropy_bits: entropy, area_m2, border: self.border(cells, low) }
     }
 
-    /// Where the density crosses a level, between the middles of cells (marching squares).
+    /// The line on which the density crosses a level, between the middles of cells (marching squares).
     fn border(&self, cells: &[f64], level: f64) -> Vec<[[f64; 2]; 2]> {
-        // Beyond the grid there is nothing.
+        // The density is zero beyond the grid.
         let at = |[x, y]: [usize; 2]| match (x.checked_sub(1), y.checked_sub(1)) {
             (Some(x), Some(y)) if x < CELLS && y < CELLS => cells[y * CELLS + x],
             _ => 0.0,
@@ -175,7 +176,7 @@ impl Grid {
                         middle(axis, a + part * (b - a))
                     })
                 });
-            // Of a saddle both lines; which way they go matters little.
+            // A saddle has two lines; which way they run matters little.
             while let (Some(from), Some(to)) = (crossings.next(), crossings.next()) {
                 lines.push([from, to]);
             }
@@ -184,7 +185,7 @@ impl Grid {
     }
 }
 
-/// One half of a normal kernel of unit sum, whose deviation is so many cells.
+/// One half of a normal kernel with a sum of 1 over both halves, whose standard deviation is given in cells.
 fn kernel(deviation: f64) -> Vec<f64> {
     let end = (END * deviation).ceil().min(CELLS as f64) as usize;
     let weight = |cell: usize| (-0.5 * (cell as f64 / deviation).powi(2)).exp();
@@ -193,13 +194,13 @@ fn kernel(deviation: f64) -> Vec<f64> {
     half.into_iter().map(|weight| weight / sum).collect()
 }
 
-/// Smoothed along both axes.
+/// Smooths along both axes.
 fn smooth(cells: &[f64], kernels: &[Vec<f64>; 2]) -> Vec<f64> {
     let along_x = spread(cells, &kernels[0], 1);
     spread(&along_x, &kernels[1], CELLS)
 }
 
-/// Smoothed along the axis on which neighbours are `stride` apart; nothing comes back from beyond the ends.
+/// Smooths along the axis on which neighbours are `stride` apart; nothing returns from beyond the ends.
 fn spread(cells: &[f64], kernel: &[f64], stride: usize) -> Vec<f64> {
     let mut spread: Vec<f64> = cells.iter().map(|cell| kernel[0] * cell).collect();
     // A run is a line of cells, or all lines of cells side by side.
@@ -231,7 +232,7 @@ mod tests {
             .collect()
     }
 
-    /// Of a lattice of so wide a step, or of particles.
+    /// The region of a lattice whose points have an area of `room`, or of particles.
     fn told(points: &[Weighed], room: Option<f64>) -> Region {
         let all: f64 = points.iter().map(|(_, weight)| weight).sum();
         let mean = |of: &dyn Fn([f64; 2]) -> f64| {

@@ -1,31 +1,32 @@
-//! What speaks against a flight.
+//! Doubts about a flight.
 
 use kestirim_air_to_ground::Channel;
 
 use super::among_buildings::FAR_OFF_DB;
 use super::{Estimate, Misfit, Quantity, Stop, level_step};
 
-/// What speaks against a flight, or what it was taken for.
+/// A reason to doubt a flight, or what it was assumed to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Doubt {
     /// The levels step: another gain, antenna or transmitter.
     Step {
-        /// When, s.
+        /// The time of the step, s.
         t: f64,
-        /// By how much, dB.
+        /// The size of the step, dB.
         by: f64,
     },
-    /// The user moves, and was taken for one who stays: the first and the last third of the flight place the user so far apart, m.
+    /// The user moves but was assumed to stay: the distance between the places from the first and the last third of the
+    /// flight, m.
     Moved(f64),
-    /// All path losses are off by so much (dB) that the transmitter is another than supposed.
+    /// All path losses are off by this much (dB), so that the transmitter is not the one assumed.
     Off(f64),
     /// The environment does not explain the measurements.
     Misfit(Misfit),
 }
 
 impl Doubt {
-    /// All that speak against the measurements up to an estimate; `channel` is the environment's, if one is known, and `moved_m`
-    /// what [`Search::moved`](super::Search::moved) says.
+    /// All doubts about the measurements up to an estimate; `channel` is that of the environment, if one is known, and
+    /// `moved_m` the result of [`Search::moved`](super::Search::moved).
     pub fn all(
         stops: &[Stop],
         estimate: &Estimate,
@@ -35,13 +36,13 @@ impl Doubt {
         let stops = stops.get(..=estimate.stop).unwrap_or(stops);
         let step = level_step(stops, estimate.place).map(|(t, by)| Self::Step { t, by });
         let misfit = channel.and_then(|it| Misfit::find(stops, estimate, it));
-        // What a transmitter sends that is not known may be anything.
+        // The level of an unknown transmitter may be anything.
         let is_far = estimate.level_db.is_none() && estimate.off_db.abs() > FAR_OFF_DB;
         let off = is_far.then_some(Self::Off(estimate.off_db));
         [step, moved_m.map(Self::Moved), off, misfit.map(Self::Misfit)].into_iter().flatten()
     }
 
-    /// In a sentence; the environment has a name.
+    /// The doubt in a sentence, with the name of the environment.
     pub fn sentence(&self, environment: &str, quantity: Quantity) -> String {
         match self {
             Self::Step { t, by } => format!(

@@ -1,16 +1,16 @@
-//! What a drone measures, and where.
+//! The measurements of a drone, and their places.
 
 use kestirim_air_to_ground::{Channel, Environment, Error as ChannelError, Measurement};
 use kestirim_scalar::Scalar;
 use kestirim_user_locator::LevelStep;
 
-/// Most corners of an area.
+/// The largest number of corners of an area.
 pub const MOST_CORNERS: usize = 4096;
 
-/// Where the user can be: a polygon, m.
+/// The area in which the user can be: a polygon, m.
 pub type Area = kestirim_user_locator::Area<f64, MOST_CORNERS>;
 
-/// What was measured.
+/// The measured quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// Path loss, dB.
@@ -22,21 +22,22 @@ pub enum Quantity {
 /// One measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
-    /// s.
+    /// Time, s.
     pub t: f64,
-    /// Where the drone was, m.
+    /// The place of the drone, m.
     pub place: [f64; 2],
-    /// Its height above the user, m.
+    /// The height of the drone above the user, m.
     pub height: f64,
     /// The path loss, or the negative level, dB.
     pub loss: f64,
-    /// Where its nose pointed, if that is known: rad, clockwise from the second axis of the plane (north) to the first (east).
+    /// The heading of the drone, if known: rad, clockwise from the second axis of the plane (north) to the first
+    /// (east).
     pub heading: Option<f64>,
 }
 
-/// Heights above which no drone flies, m.
+/// The height above which no drone flies, m.
 const HIGHEST_M: f64 = 20_000.0;
-/// No radio measures a larger loss or level, dB.
+/// The largest loss or level that a radio measures, dB.
 const LARGEST_DB: f64 = 300.0;
 
 impl Stop {
@@ -46,18 +47,18 @@ impl Stop {
     }
 }
 
-/// Wavelength of 2 GHz with the thesis' speed of light, m.
+/// The wavelength of 2 GHz with the thesis' speed of light, m.
 pub const WAVELENGTH_M: f64 = 0.15;
 
-/// The speed of light as the thesis has it, m/s.
+/// The speed of light in the thesis, m/s.
 const LIGHT: f64 = 3e8;
 
-/// Wavelength of a frequency (Hz), m.
+/// The wavelength (m) of a frequency (Hz).
 pub fn wavelength_m(frequency_hz: f64) -> f64 {
     LIGHT / frequency_hz
 }
 
-/// What is built on the ground.
+/// The kind of environment on the ground.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum EnvironmentKind {
@@ -73,7 +74,7 @@ pub enum EnvironmentKind {
 }
 
 impl EnvironmentKind {
-    /// Its channel at 2 GHz.
+    /// The channel of the environment at 2 GHz.
     ///
     /// # Panics
     /// Never: the published constants make a channel.
@@ -81,10 +82,10 @@ impl EnvironmentKind {
         self.channel_at(WAVELENGTH_M).expect("the thesis' constants")
     }
 
-    /// Its channel at a wavelength (m). What is lost beyond free space is what was published for 2 GHz.
+    /// The channel of the environment at a wavelength (m). The loss beyond free space is the one published for 2 GHz.
     ///
     /// # Errors
-    /// [`ChannelError`] if it is no wavelength.
+    /// [`ChannelError`] if the wavelength is invalid.
     pub fn channel_at<T: Scalar>(self, wavelength_m: f64) -> Result<Channel<T>, ChannelError> {
         let environment = match self {
             Self::Suburban => Environment::suburban(),
@@ -96,7 +97,7 @@ impl EnvironmentKind {
     }
 }
 
-/// When the levels step, s, and by how much, dB, as seen from the estimated place.
+/// The time (s) and the size (dB) of a step in the levels, as seen from the estimated place.
 pub fn level_step(stops: &[Stop], place: [f64; 2]) -> Option<(f64, f64)> {
     let measured = |stop: &Stop| {
         let measurement = Measurement::new(stop.place, stop.height, stop.loss).ok()?;

@@ -1,4 +1,4 @@
-//! Whether measurements are those that an environment lets one expect.
+//! Tests whether measurements are what an environment predicts.
 
 use kestirim_air_to_ground::Channel;
 
@@ -6,37 +6,41 @@ use super::{Estimate, Quantity, Stop};
 use crate::clipped::Clipped;
 use crate::metrics::{distance, rms};
 
-/// Fewer measurements fit any environment at some place.
+/// The fewest measurements that are tested: fewer fit any environment at some place.
 const FEWEST: usize = 8;
-/// A path that is obstructed where hardly one is lies ten sigmas and more off: what is farther counts as so many.
+/// The limit to which deviations are clipped, in sigmas: a path that is obstructed where hardly any is lies ten sigmas
+/// and more off.
 const FARTHEST: f64 = 4.0;
-/// Variance of the square of a deviation over its sigma: of a normal distribution 2, of two mixed ones up to this.
+/// The variance of the squared ratio of a deviation to its sigma: 2 for a normal distribution, up to this for a mixture
+/// of two.
 const SPREAD: f64 = 8.0;
-/// By so many of its own standard deviations a mean must be off.
+/// The number of its own standard deviations by which the mean square must be off.
 const CLEAR: f64 = 5.0;
-/// Correlation of neighbouring deviations that is not counted, as an environment's are independent: shadowing lasts a little.
+/// The correlation of successive deviations that is tolerated, although an environment's are independent: shadowing
+/// lasts a little.
 const LASTING: f64 = 0.3;
-/// Mean square of deviations over their sigmas below which they may last: measurements without noise leave roundings.
+/// The mean square of deviations over their sigmas below which they may be correlated: measurements without noise leave
+/// rounding errors.
 const NEGLIGIBLE: f64 = 0.01;
-/// A correlation must be off by so many of its own standard deviations.
+/// The number of its own standard deviations by which the correlation must be off.
 const CLEARLY_LASTING: f64 = 3.0;
 
-/// Deviations of measurements from an environment that does not explain them.
+/// The deviations of measurements from an environment that does not explain them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Misfit {
     /// Root mean square of the deviations, dB.
     pub found_db: f64,
-    /// What the environment explains, dB.
+    /// The root mean square deviation that the environment explains, dB.
     pub expected_db: f64,
-    /// Whether they are too large; otherwise they last too long, from measurement to measurement.
+    /// Whether the deviations are too large; otherwise they last too long, from measurement to measurement.
     pub is_large: bool,
-    /// Correlation of each with the next; the environment expects none.
+    /// The correlation of successive deviations; the environment predicts none.
     pub next: f64,
 }
 
 impl Misfit {
-    /// Of the measurements, in their order, seen from where the user is believed to be; none if the environment's channel
-    /// explains them.
+    /// Tests measurements, in their order, as seen from the estimated place of the user; `None` if the environment's
+    /// channel explains them.
     pub fn find(stops: &[Stop], estimate: &Estimate, channel: &Channel<f64>) -> Option<Self> {
         let deviation = |stop: &Stop| {
             let far = distance(stop.place, estimate.place);
@@ -58,7 +62,7 @@ impl Misfit {
         (is_large || is_lasting).then_some(Self { found_db, expected_db, is_large, next })
     }
 
-    /// In a sentence; the environment has a name.
+    /// The misfit in a sentence, with the name of the environment.
     pub fn sentence(&self, environment: &str, quantity: Quantity) -> String {
         let Self { found_db, expected_db, is_large, next } = self;
         let off = if *is_large {

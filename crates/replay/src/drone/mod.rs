@@ -1,7 +1,7 @@
 //! A user on the ground, heard by a drone.
 //!
-//! A [`Search`] makes an [`Estimate`] of each [`Stop`] at which the drone measured. Places are metres in the plane, heights
-//! metres above the user.
+//! A [`Search`] gives an [`Estimate`] for each [`Stop`] at which the drone measured. Places are metres in the plane,
+//! heights metres above the user.
 
 mod among_buildings;
 mod check;

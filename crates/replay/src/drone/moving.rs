@@ -1,4 +1,4 @@
-//! A user who moves: what was measured long ago says where they were.
+//! Search for a moving user: old measurements tell only where the user was.
 
 use std::ops::Range;
 
@@ -7,13 +7,13 @@ use rayon::prelude::*;
 use super::{EnvironmentKind, Estimate, Quantity, Search};
 use crate::metrics::distance;
 
-/// So many deviations of both apart, two places are not the same.
+/// The distance, in standard deviations of both, beyond which two places are different.
 const APART: f64 = 3.0;
-/// Of fewer measurements in each third of a flight nothing is said.
+/// The fewest measurements in each third of a flight from which movement is judged.
 const FEWEST: usize = 8;
 
 impl Search<'_> {
-    /// Estimates from the measurements of the last seconds before each alone.
+    /// Estimates, each from the measurements of the last seconds before it alone.
     pub(super) fn while_moving(
         &self,
         environment: Option<EnvironmentKind>,
@@ -30,8 +30,8 @@ impl Search<'_> {
         asked.par_iter().filter_map(find).collect()
     }
 
-    /// How far apart (m) the first and the last third of a flight place a user who is taken for one who stays; none if that may
-    /// be chance.
+    /// The distance (m) between the places from the first and the last third of a flight, for a user who is assumed to
+    /// stay; `None` if it may be chance.
     pub fn moved(&self, environment: Option<EnvironmentKind>, quantity: Quantity) -> Option<f64> {
         let count = self.stops.len();
         if count < 3 * FEWEST || self.window_s.is_some() {

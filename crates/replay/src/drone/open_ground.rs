@@ -1,4 +1,4 @@
-//! Over open ground, through a channel of which nothing is known.
+//! Search over open ground, through a channel of which nothing is known.
 
 use kestirim_air_to_ground::{Heading, OpenGround};
 use kestirim_user_locator::{GroundEstimate, GroundSearch, Informative, Waypoint};
@@ -7,20 +7,21 @@ use rayon::prelude::*;
 use super::{Cloud, Estimate, MOST_CORNERS, Next, Quantity, Search, level_prior};
 use crate::metrics::median;
 
-/// Places of a flight that are told apart.
+/// The largest number of distinct places of a flight.
 pub const MOST_PLACES: usize = 120;
-/// Points of a lattice: with them a posterior's mean is right to a metre in a hundred of its width.
+/// The number of lattice points: with them, a posterior's mean is accurate to one metre per hundred metres of its
+/// width.
 pub const POINTS_OPEN: usize = 800;
-/// Estimates of a flight that are enough to be drawn.
+/// The number of estimates of a flight that is enough for drawing.
 pub const MOST_DRAWN: usize = 30;
-/// Points on the way, where estimates are many.
+/// The number of lattice points for estimates on the way, of which there are many.
 const POINTS_ON_THE_WAY: usize = 200;
 
-/// Of a recorded flight.
+/// The search along a recorded flight.
 type Ground = GroundSearch<f64, MOST_PLACES, MOST_CORNERS>;
 
 impl Search<'_> {
-    /// After each measurement of a short flight, after one in several of a long one, and after the last.
+    /// Estimates after each measurement of a short flight, or after one in several of a long one, including the last.
     pub(super) fn over_open_ground(&self, quantity: Quantity) -> Vec<Estimate> {
         let channel = OpenGround::new(level_prior(quantity, self.wavelength_m));
         let mut search = Box::new(Ground::new(channel, (*self.area).clone()));
@@ -69,7 +70,7 @@ impl Search<'_> {
         })
     }
 
-    /// Where to measure next, as high as usually.
+    /// The place to measure next, at the usual height.
     fn next<const POINTS: usize>(
         &self,
         search: &Ground,

@@ -1,20 +1,21 @@
-//! Where a user is looked for: over open ground, or through the thesis' channel.
+//! The search for a user: over open ground, or through the thesis' channel.
 
 use kestirim_air_to_ground::{LevelPrior, Measurement};
 use kestirim_particle_filter::Region;
 
 use super::{Area, EnvironmentKind, Error, Estimate, Quantity, Stop, WAVELENGTH_M};
 
-/// Points of a lattice.
+/// The number of points of a lattice.
 pub const POINTS: usize = 2000;
-/// Most measurements of a flight among buildings; of more as many are taken, evenly.
+/// The largest number of measurements of a flight among buildings; of more, this many are taken evenly.
 pub const MOST: usize = 400;
-/// How far beyond the flight the user may be if no area is given, m.
+/// The margin around the flight in which the user may be if no area is given, m.
 pub const BEYOND_M: f64 = 500.0;
-/// How well a path loss is calibrated, dB.
+/// The standard deviation of a path loss's calibration, dB.
 pub(super) const CALIBRATION_DB: f64 = 3.0;
 
-/// As many measurements as can be remembered, evenly chosen; over open ground, where they are thinned by place, all.
+/// The measurements to be used: as many as can be handled, evenly chosen; over open ground, where they are thinned by
+/// place, all.
 pub fn thinned(stops: &[Stop], environment: Option<EnvironmentKind>) -> Vec<Stop> {
     let count = stops.len();
     if environment.is_some() && count > MOST {
@@ -24,11 +25,11 @@ pub fn thinned(stops: &[Stop], environment: Option<EnvironmentKind>) -> Vec<Stop
     }
 }
 
-/// What is known of the level received at one metre over open ground, at a wavelength (m); none if nothing is.
+/// The prior of the level received at one metre over open ground, for a wavelength (m); `None` if nothing is known.
 pub fn level_prior(quantity: Quantity, wavelength_m: f64) -> Option<LevelPrior<f64>> {
     match quantity {
         Quantity::Level => None,
-        // What is lost on the first metre.
+        // The loss over the first metre.
         Quantity::PathLoss => Some(LevelPrior {
             mean: -20.0 * (4.0 * std::f64::consts::PI / wavelength_m).log10(),
             sigma: CALIBRATION_DB,
@@ -36,29 +37,29 @@ pub fn level_prior(quantity: Quantity, wavelength_m: f64) -> Option<LevelPrior<f
     }
 }
 
-/// Where a user is looked for.
+/// The search for a user.
 #[derive(Debug)]
 pub struct Search<'a> {
     pub(super) stops: &'a [Stop],
-    /// Coordinates are counted from here, so that they stay small.
+    /// The origin of coordinates, chosen so that they stay small.
     pub(super) origin: [f64; 2],
     pub(super) area: Box<Area>,
-    /// Where the user really was at each measurement; empty if nobody knows.
+    /// The true place of the user at each measurement; empty if unknown.
     pub(super) truth: &'a [[f64; 2]],
-    /// How many estimates are wanted at the most, the last among them, where each takes long.
+    /// The largest number of estimates, including the last one, where each takes long.
     pub(super) most: usize,
-    /// Whether all that is believed is wanted.
+    /// Whether clouds are requested.
     pub(super) with_clouds: bool,
-    /// Of what the transmitter sends, m.
+    /// The wavelength of the transmitter, m.
     pub(super) wavelength_m: f64,
-    /// Measurements of so many seconds count, if not all do.
+    /// The time for which measurements count, s; `None` for all.
     pub(super) window_s: Option<f64>,
-    /// Whether fewer points will do.
+    /// Whether fewer points are enough.
     pub(super) is_rough: bool,
 }
 
 impl<'a> Search<'a> {
-    /// In an area, or about the measurements if none is given.
+    /// A search in an area, or around the measurements if none is given.
     ///
     /// # Errors
     /// [`Error::Area`] if the measurements have no surroundings.
@@ -82,18 +83,19 @@ impl<'a> Search<'a> {
         Ok(Self { stops, origin, area, truth, most, with_clouds, wavelength_m, window_s, is_rough })
     }
 
-    /// The same at another wavelength than that of 2 GHz, m.
+    /// Sets the wavelength, m; by default that of 2 GHz.
     pub fn at_wavelength(self, wavelength_m: f64) -> Self {
         Self { wavelength_m, ..self }
     }
 
-    /// The same from the measurements of the last `window_s` seconds alone, for a user who moves.
+    /// Restricts the measurements to those of the last `window_s` seconds, for a user who moves.
     pub fn within(self, window_s: Option<f64>) -> Self {
         Self { window_s, ..self }
     }
 
-    /// Where the user is after each measurement that some place explains: through the channel of an environment, or
-    /// over open ground if there is none. If only those of some seconds count, after as many as are wanted at the most.
+    /// Estimates after each measurement that some place explains: through the channel of an environment, or over open
+    /// ground if there is none. If only the measurements of some seconds count, the number of estimates is limited to
+    /// the largest number requested.
     pub fn find(&self, environment: Option<EnvironmentKind>, quantity: Quantity) -> Vec<Estimate> {
         match environment {
             _ if self.window_s.is_some() => self.while_moving(environment, quantity),
@@ -102,8 +104,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether an estimate is wanted after the measurement of this number: after one in several, counted from the end, so that
-    /// the last is one of them.
+    /// Whether an estimate is requested after the measurement of this number: after one in several, counted from the
+    /// end, so that the last is one of them.
     pub(super) fn is_asked(&self, number: usize) -> bool {
         let count = self.stops.len();
         (count - 1 - number).is_multiple_of(count.div_ceil(self.most.max(1)))
@@ -122,7 +124,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The box around a flight, and some more: its lower corner, and the area as seen from there.
+/// The box around a flight with a margin: its lower corner, and the area relative to that.
 fn surroundings(stops: &[Stop]) -> Result<([f64; 2], Area), Error> {
     let bound = |axis: usize, sign: f64| {
         let outermost = stops.iter().map(|stop| sign * stop.place[axis]).fold(f64::MIN, f64::max);

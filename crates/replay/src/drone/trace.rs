@@ -1,18 +1,18 @@
-//! What was measured, and where the user is after each measurement.
+//! Measurements, and the estimated place of the user after each.
 
 use kestirim_air_to_ground::Rotor;
 
 use super::{Estimate, Stop};
 use crate::metrics::distance;
 
-/// How far a synthetic drone flew.
+/// The flight of a synthetic drone.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Flown {
-    /// Length of its path, m.
+    /// The length of the path, m.
     pub path_m: f64,
-    /// Sum of its climbs, m.
+    /// The sum of all climbs, m.
     pub climb_m: f64,
-    /// How long it hovered, s.
+    /// The time spent hovering, s.
     pub hover_s: f64,
 }
 
@@ -31,36 +31,37 @@ impl Flown {
 /// Another transmitter that was heard.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Other {
-    /// As the log names it.
+    /// The name in the log.
     pub name: String,
-    /// Where it is after the last measurement; none if no place explains them, and of fewer than three.
+    /// The estimate after the last measurement; `None` if no place explains the measurements, or if there are fewer
+    /// than three.
     pub estimate: Option<Estimate>,
-    /// Where it really was then, if anybody knows.
+    /// The true place at that time, if known.
     pub truth: Option<[f64; 2]>,
 }
 
 impl Other {
-    /// Distance of the estimate from the truth, if anybody knows it, m.
+    /// The distance of the estimate from the truth, if that is known, m.
     pub fn error_m(&self) -> Option<f64> {
         Some(distance(self.estimate.as_ref()?.place, self.truth?))
     }
 }
 
-/// What was measured, and where the user is after each measurement that some place explains.
+/// Measurements, and the estimates after each one that some place explains.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Track {
     /// The measurements that are used.
     pub stops: Vec<Stop>,
-    /// Where the user really was at each of them; empty if nobody knows.
+    /// The true place of the user at each measurement; empty if unknown.
     pub truth: Vec<[f64; 2]>,
-    /// In the order of the measurements.
+    /// The estimates, in the order of the measurements.
     pub estimates: Vec<Estimate>,
-    /// What a reader should know.
+    /// Warnings for the reader.
     pub warnings: Vec<String>,
-    /// How far apart (m) the first and the last third of the flight place a user who is taken for one who stays, if that is no
-    /// chance.
+    /// The distance (m) between the places from the first and the last third of the flight, for a user who is assumed
+    /// to stay, if it is not chance.
     pub moved_m: Option<f64>,
-    /// Of a synthetic drone.
+    /// The flight, if the drone is synthetic.
     pub flown: Option<Flown>,
     /// Other transmitters that were heard on the same flight.
     pub others: Vec<Other>,
@@ -72,22 +73,22 @@ impl Track {
         self.stops[estimate.stop]
     }
 
-    /// Where the user really was at an estimate, if anybody knows.
+    /// The true place of the user at an estimate, if known.
     pub fn user(&self, estimate: &Estimate) -> Option<[f64; 2]> {
         self.truth.get(estimate.stop).copied()
     }
 
-    /// Distance of an estimate from the user, if anybody knows where they were, m.
+    /// The distance of an estimate from the true place of the user, if known, m.
     pub fn error_m(&self, estimate: &Estimate) -> Option<f64> {
         Some(distance(self.user(estimate)?, estimate.place))
     }
 
-    /// Seconds since the first measurement at an estimate.
+    /// The time of an estimate, s since the first measurement.
     pub fn seconds(&self, estimate: &Estimate) -> f64 {
         self.stop(estimate).t - self.stops.first().map_or(0.0, |stop| stop.t)
     }
 
-    /// Which estimate is looked at: the one of this number, counted from 1, or the last.
+    /// The index of the estimate that is shown: the one of this number, counted from 1, or the last.
     pub fn now(&self, step: Option<f64>) -> usize {
         let count = self.estimates.len().max(1);
         step.map_or(count, |step| (step as usize).clamp(1, count)) - 1

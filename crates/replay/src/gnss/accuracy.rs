@@ -1,4 +1,4 @@
-//! How good positions are, where the truth is known: the paper's measures.
+//! The accuracy of positions whose truth is known, by the paper's measures.
 
 use kestirim_gnss_ppp::Geodetic;
 use nalgebra::Vector3;
@@ -6,36 +6,37 @@ use nalgebra::Vector3;
 use super::Fix;
 use crate::metrics::{error_over_sigma, rms};
 
-/// Errors before this are those of the beginning, s since the first epoch.
+/// Errors before this time belong to the beginning and do not enter root mean squares, s since the first epoch.
 pub const BEGINNING: f64 = 3600.0;
-/// From here on a position has converged, m …
+/// The error below which a position may have converged, m.
 const CONVERGED: f64 = 0.1;
-/// … if it stays so for as long as this, s.
+/// The time for which the error must stay below `CONVERGED`, s.
 const LASTING: f64 = 900.0;
-/// Times nearer than this are the same, s.
+/// Times closer together than this are the same, s.
 const SAME: f64 = 1e-3;
 
-/// How far positions are from the truth.
+/// The errors of positions against the truth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Accuracy {
-    /// Distance of the last position, m.
+    /// The distance of the last position from the truth, m.
     pub final_3d_m: f64,
-    /// Root mean square distance from an hour after the first epoch on, m.
+    /// The root mean square distance from the truth, from an hour after the first epoch on, m.
     pub rms_3d_m: Option<f64>,
-    /// Minutes from the first epoch to that whose error is below 10 cm and stays so for 15 min.
+    /// Minutes from the first epoch to the one from which on the error is below 10 cm for 15 min.
     pub convergence_min: Option<f64>,
-    /// The last position less the truth, to the east, north and up, m.
+    /// The last position minus the truth, to the east, north and up, m.
     pub final_enu_m: [f64; 3],
-    /// As `rms_3d_m`, to the east, north and up.
+    /// The root mean square errors to the east, north and up, from an hour after the first epoch on, m.
     pub rms_enu_m: Option<[f64; 3]>,
-    /// Root mean square distance over root mean square standard deviation, as `rms_3d_m`.
+    /// The root mean square distance over the root mean square standard deviation, from an hour after the first epoch
+    /// on.
     pub error_over_sigma: Option<f64>,
 }
 
 impl Accuracy {
-    /// Compares positions in the order of time with the true one; `begin` is the time of the first epoch, with
-    /// or without a position. None if there are none.
+    /// Compares positions in the order of time with the true one; `begin` is the time of the first epoch, with or
+    /// without a position. `None` without positions.
     pub fn of(fixes: &[Fix], begin: f64, truth: &Vector3<f64>) -> Option<Self> {
         let rotation = Geodetic::from_ecef(truth).enu_from_ecef();
         let errors: Vec<(f64, Vector3<f64>)> =
@@ -54,7 +55,7 @@ impl Accuracy {
         })
     }
 
-    /// With what the filter said of its own errors: a standard deviation to the east, north and up for each position, m.
+    /// Adds the comparison with the filter's own standard deviations: to the east, north and up for each position, m.
     pub fn with_deviations(
         self,
         fixes: &[Fix],
@@ -70,7 +71,7 @@ impl Accuracy {
     }
 }
 
-/// When the error became small and stayed so, as far as was looked.
+/// The time from which on the error stays small for `LASTING`.
 fn convergence(errors: &[(f64, Vector3<f64>)]) -> Option<f64> {
     let (end, _) = errors.last()?;
     let mut since = None;

@@ -1,19 +1,21 @@
-//! Whether orbits and clocks are of one solution: an orbit file has clocks of its own, which are the same then.
+//! Whether orbits and clocks come from one solution: an orbit file has clocks of its own, which then agree with those
+//! of the clock files.
 
 use kestirim_gnss_files::{Clocks, OrbitSample, Orbits, System};
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 
 use crate::metrics::median;
 
-/// Clocks of one solution are within 1 cm of each other (a service of rapid products; others to a tenth of a millimetre), those
-/// of two are 5 cm apart: what is in between, m.
+/// The median difference above which clocks are of two solutions, m. Clocks of one solution are within 1 cm of each
+/// other (a service of rapid products; others to a tenth of a millimetre), those of two are 5 cm apart.
 const APART_M: f64 = 0.02;
-/// So many instants are compared.
+/// The largest number of instants that are compared.
 const INSTANTS: usize = 24;
-/// Fewer satellites do not tell a common offset.
+/// The fewest satellites that tell a common offset.
 const FEWEST: usize = 4;
 
-/// A warning where the clocks of clock files are not those of the orbit files, beside what all of a system have in common.
+/// A warning if the clocks of the clock files differ from those of the orbit files by more than an offset common to all
+/// satellites of a system.
 pub(super) fn doubt(orbits: &Orbits, clocks: &Clocks) -> Option<String> {
     let of = |system| Some(differences(orbits, clocks, system)).filter(|it| !it.is_empty());
     let systems = [System::Gps, System::Galileo].into_iter().filter_map(of);
@@ -26,7 +28,8 @@ pub(super) fn doubt(orbits: &Orbits, clocks: &Clocks) -> Option<String> {
     })
 }
 
-/// How far the clocks of satellites are apart, beside the median of all, m.
+/// How far the clocks of the satellites in both kinds of files are apart, relative to the median over all at an
+/// instant, m.
 fn differences(orbits: &Orbits, clocks: &Clocks, system: System) -> Vec<f64> {
     let numbers: Vec<u8> = orbits.satellites().filter(|it| System::of(*it) == system).collect();
     let longest = numbers.iter().map(|&number| orbits.satellite(number)).max_by_key(|it| it.len());

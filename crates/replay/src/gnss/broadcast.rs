@@ -1,4 +1,5 @@
-//! What satellites broadcast, as the filter wants it: a satellite's state at an instant, with its own word for how good it is.
+//! Broadcast ephemerides, as the filter needs them: a satellite's state at an instant, with the accuracy that the
+//! satellite itself states.
 
 use std::collections::BTreeMap;
 
@@ -9,24 +10,24 @@ use kestirim_gnss_ppp::{Carriers, Ephemeris, GpsTime, Klobuchar, SatelliteState}
 use super::model;
 use super::products::Unusable;
 
-/// Ephemerides of the satellites that were observed.
+/// The ephemerides of the satellites that were observed.
 #[derive(Debug, Default)]
 pub struct Broadcast {
     satellites: BTreeMap<u8, Own>,
     ionosphere: Option<Klobuchar>,
 }
 
-/// The ephemerides of one satellite, unhealthy ones among them: what came before those does not serve in their place.
+/// The ephemerides of one satellite, including unhealthy ones: an earlier one does not serve in place of those.
 #[derive(Debug, Default)]
 struct Own {
-    /// Those of the message that is made for the carriers, and that tells their health.
+    /// The ephemerides of the message that is made for the observed carriers, and that tells their health.
     first: Vec<Ephemeris>,
-    /// Those of another message, whose orbits are the same.
+    /// The ephemerides of another message, whose orbits are the same.
     other: Vec<Ephemeris>,
 }
 
 impl Own {
-    /// The ephemeris that serves at a time: the nearest one, if the satellite does not call itself unhealthy in it.
+    /// The ephemeris to be used at a time: the nearest one, unless the satellite declares itself unhealthy in it.
     fn at(&self, time: GpsTime) -> Option<&Ephemeris> {
         let nearest = |of| Ephemeris::nearest(of, time);
         let away = |it: &Ephemeris| time.since(it.time).abs();
@@ -46,13 +47,13 @@ impl Own {
     }
 }
 
-/// Whether an ephemeris tells an accuracy, as those of unhealthy satellites do not ([`model::ephemeris`]).
+/// Whether an ephemeris has an accuracy, unlike those of unhealthy satellites ([`model::ephemeris`]).
 const fn serves(ephemeris: &Ephemeris) -> bool {
     ephemeris.accuracy.is_finite()
 }
 
 impl Broadcast {
-    /// The ephemerides for the signals that are observed of each satellite.
+    /// The ephemerides for the observed signals of each satellite.
     pub(super) fn new(navigation: &Navigation, signals: &BTreeMap<u8, Signals>) -> Self {
         let mut broadcast = Self {
             ionosphere: navigation.ionosphere.map(|[alpha, beta]| Klobuchar { alpha, beta }),
@@ -76,8 +77,8 @@ impl Broadcast {
         broadcast
     }
 
-    /// The state of a satellite when it sent what was received at `time` with a code of so many m, and by what its clock is ahead
-    /// of that of the first carrier alone, s.
+    /// The state of a satellite when it sent what was received at `time` with a code of `code` m, and the lead of its
+    /// clock over that of the first carrier alone, s.
     pub(super) fn state(
         &self,
         satellite: u8,
@@ -100,18 +101,18 @@ impl Broadcast {
         Ok((state, ephemeris.group_delay))
     }
 
-    /// Whether there is any ephemeris for the signals of a satellite.
+    /// Whether there is any ephemeris for the observed signals of a satellite.
     pub(super) fn knows(&self, satellite: u8) -> bool {
         let own = self.satellites.get(&satellite);
         own.is_some_and(|own| !own.first.is_empty() || !own.other.is_empty())
     }
 
-    /// The ionosphere, if it is broadcast.
+    /// The broadcast ionosphere model, if there is one.
     pub(super) const fn ionosphere(&self) -> Option<&Klobuchar> {
         self.ionosphere.as_ref()
     }
 
-    /// Satellites that call themselves unhealthy, or tell no accuracy, at some time.
+    /// The satellites that declare themselves unhealthy, or state no accuracy, at some time.
     pub(super) fn disowned(&self) -> impl Iterator<Item = u8> {
         self.satellites.iter().filter(|(_, own)| own.is_disowned()).map(|(satellite, _)| *satellite)
     }
@@ -123,7 +124,7 @@ mod tests {
 
     use super::*;
 
-    /// Of a healthy satellite at a second of a day.
+    /// The ephemeris of a healthy satellite at a second of a day.
     fn told(message: Message, second: f64) -> files::Ephemeris {
         let time = files::GpsTime::new(59_025, second);
         files::Ephemeris {
@@ -186,7 +187,7 @@ mod tests {
         use Message::{Fnav, Inav};
         let served = |all: &[_]| served(Observed::E1E5a, all, 9_000.0);
         assert_eq!(served(&[unhealthy(Fnav, 7_200.0), told(Inav, 7_800.0)]), (None, true));
-        // E5b may be what is unhealthy.
+        // The unhealthy signal may be E5b.
         let other = [told(Fnav, 7_200.0), unhealthy(Inav, 7_800.0)];
         assert_eq!(served(&other), (Some(7_200.0), false));
         assert_eq!(served(&other[1..]), (None, true));

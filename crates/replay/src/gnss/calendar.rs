@@ -6,7 +6,7 @@ const UNIX_DAY: i64 = 40_587;
 /// Year, month, day, hour and minute, and the second.
 pub(super) type Calendar = ([i64; 5], f64);
 
-/// The date and time of seconds after a midnight, to the millisecond.
+/// The date and time of `seconds` after the midnight of `day` (modified Julian date), to the millisecond.
 pub(super) fn calendar(day: i64, seconds: f64) -> Calendar {
     let milliseconds = (1e3 * seconds).round() as i64;
     let (days, rest) = (milliseconds.div_euclid(86_400_000), milliseconds.rem_euclid(86_400_000));
@@ -24,7 +24,7 @@ pub(super) fn calendar(day: i64, seconds: f64) -> Calendar {
     ([year, month, date, hour, minute], (rest % 60_000) as f64 / 1e3)
 }
 
-/// A date and time for people, to the millisecond where it is no whole second.
+/// A readable date and time, to the millisecond if the second is not whole.
 pub(super) fn in_words(([year, month, day, hour, minute], second): Calendar) -> String {
     let (digits, decimals) = if second.fract() == 0.0 { (2, 0) } else { (6, 3) };
     format!("{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:0digits$.decimals$}")

@@ -1,4 +1,4 @@
-//! What a day of observations shows before it is solved.
+//! Checks of a day of observations before it is solved.
 
 use kestirim_health::Reason;
 
@@ -6,7 +6,7 @@ use super::{FEWEST_SATELLITES, Recording};
 use crate::Finding;
 use crate::metrics::median;
 
-/// What the recording shows.
+/// The findings about a recording.
 pub fn check(recording: &Recording) -> Vec<Finding> {
     let epochs = recording.epochs(None);
     let times: Vec<f64> = epochs.iter().map(|epoch| recording.seconds(epoch)).collect();

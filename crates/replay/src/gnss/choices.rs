@@ -1,16 +1,16 @@
-//! Which filter, and of which systems the satellites.
+//! Choices of the filter, the satellite systems and the method.
 
 use kestirim_gnss_files::System;
 use kestirim_ppp_filter::{Config, Estimator, Motion, states};
 
-/// States of a filter with room for twenty satellites: from no place on earth more of the 32 are seen.
+/// The number of states of a filter with room for twenty satellites: nowhere on earth are more of the 32 in view.
 pub const STATES: usize = states(20);
-/// The same where satellites of Galileo are among them.
+/// The number of states of a filter with room for 34 satellites, those of Galileo among them.
 pub const STATES_WITH_GALILEO: usize = states(34);
-/// The same where satellites of any system are.
+/// The number of states of a filter with room for 50 satellites of any system.
 pub const STATES_OF_ALL: usize = states(50);
 
-/// Satellites of which systems serve.
+/// The systems whose satellites are used.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
@@ -27,12 +27,12 @@ pub enum Systems {
 }
 
 impl Systems {
-    /// Whether a satellite serves, by its number.
+    /// Whether a satellite is used, by its number.
     pub const fn has(self, satellite: u8) -> bool {
         self.has_system(System::of(satellite))
     }
 
-    /// Whether satellites of a system serve.
+    /// Whether the satellites of a system are used.
     pub const fn has_system(self, system: System) -> bool {
         match self {
             Self::All => true,
@@ -43,7 +43,7 @@ impl Systems {
     }
 }
 
-/// Whether ambiguities become whole numbers.
+/// Whether ambiguities are fixed to integers.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
@@ -55,7 +55,7 @@ pub enum Ambiguities {
     Fixed,
 }
 
-/// From what positions are made.
+/// What positions are computed from.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
@@ -67,7 +67,7 @@ pub enum Method {
     Single,
 }
 
-/// Which filter.
+/// The kind of filter.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
@@ -92,17 +92,17 @@ impl FilterKind {
     pub const ALL: [Self; 6] =
         [Self::Gkf, Self::Rkf, Self::Skf, Self::Ikf, Self::Adaptive, Self::Default];
 
-    /// Whether the paper publishes formulas of it from which ours differ.
+    /// Whether the paper publishes formulas for it that differ from ours.
     pub const fn is_published(self) -> bool {
         matches!(self, Self::Rkf | Self::Skf | Self::Ikf | Self::Adaptive)
     }
 
-    /// Whether it weights by IGG III, between two thresholds.
+    /// Whether it uses IGG III weights, between two thresholds.
     pub const fn has_thresholds(self) -> bool {
         !matches!(self, Self::Gkf | Self::Skf)
     }
 
-    /// As on the command line.
+    /// The name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Gkf => "gkf",
@@ -114,7 +114,7 @@ impl FilterKind {
         }
     }
 
-    /// What people call it.
+    /// The name for display.
     pub const fn title(self) -> &'static str {
         match self {
             Self::Gkf => "plain (GKF)",
@@ -126,7 +126,7 @@ impl FilterKind {
         }
     }
 
-    /// What is done about observations that do not fit, as the paper publishes it if `published`.
+    /// The treatment of observations that do not fit, as the paper publishes it if `published`.
     pub fn estimator(self, motion: Motion, published: bool) -> Estimator {
         let ours = match self {
             Self::Gkf => Estimator::plain(),
@@ -143,8 +143,8 @@ impl FilterKind {
         }
     }
 
-    /// The settings of our results with this filter, whose states are the paper's if it is one of the paper's: those have no
-    /// gradients of the troposphere.
+    /// The settings of our results with this filter. A filter of the paper has the paper's states, without gradients of
+    /// the troposphere.
     pub fn config(self, motion: Motion, published: bool) -> Config {
         let ours = Config::new(motion);
         let gradient = if self == Self::Default { ours.gradient } else { 0.0 };

@@ -1,4 +1,4 @@
-//! Of which satellites, and when, the products know enough.
+//! Coverage: the satellites and times for which the products are sufficient.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,8 @@ use super::broadcast::Broadcast;
 use super::model::{self, patterns};
 use super::products::Products;
 
-/// Satellites beside those of GPS that are not to be used, and warnings about those of which something is not known.
+/// The satellites other than those of GPS that are not to be used, and warnings about those of which something is
+/// unknown.
 pub(super) fn left_out(
     observations: &Observations,
     orbits: &Orbits,
@@ -28,7 +29,8 @@ pub(super) fn left_out(
     let all = observations.signals.iter();
     let without = |(number, _): &(&u8, &Signals)| orbits.satellite(**number).is_empty();
     let is_gps = |(number, _): &(&u8, &Signals)| System::of(**number) == System::Gps;
-    // A metre off is worse than nothing, where GPS serves without; so are the orbits of geostationary ones.
+    // A satellite that is a metre off is worse than none where GPS does without it; the same holds for the orbits of
+    // geostationary satellites.
     let (mut left_out, mut far) = (BTreeSet::new(), BTreeSet::new());
     for (&number, signals) in all.clone().filter(|it| !is_gps(it)) {
         if System::is_geostationary(number) {
@@ -61,7 +63,7 @@ pub(super) fn left_out(
     left_out
 }
 
-/// Satellites beside those of GPS of which no ephemeris for the observed signals is known, and a warning about them.
+/// The satellites other than those of GPS without ephemerides for the observed signals, and a warning about them.
 pub(super) fn without_ephemerides(
     observations: &Observations,
     broadcast: &Broadcast,
@@ -79,7 +81,8 @@ pub(super) fn without_ephemerides(
     left_out
 }
 
-/// A warning of observed satellites whose antennas are not those that orbits and clocks were made with, nor could be converted.
+/// A warning about observed satellites whose antennas are not those that orbits and clocks were made with, and could
+/// not be converted.
 pub(super) fn other_antennas(
     observations: &Observations,
     products: &Products,
@@ -96,7 +99,7 @@ pub(super) fn other_antennas(
     Some((Some(Correction::SatelliteAntenna), sentence))
 }
 
-/// From when to when there are orbits, s since midnight.
+/// The span of time covered by orbits, s since midnight.
 pub(super) fn span(orbits: &Orbits, midnight: GpsTime) -> [f64; 2] {
     let times = orbits.satellites().filter_map(|prn| {
         let samples = orbits.satellite(prn);
@@ -108,7 +111,7 @@ pub(super) fn span(orbits: &Orbits, midnight: GpsTime) -> [f64; 2] {
     })
 }
 
-/// From when to when ephemerides hold, two hours around each, s since midnight.
+/// The span of time in which ephemerides hold, two hours around each, s since midnight.
 pub(super) fn span_of_broadcast(navigation: &Navigation, midnight: GpsTime) -> [f64; 2] {
     const HOLDS: f64 = 7_200.0;
     let all = navigation.satellites().flat_map(|number| {
@@ -120,7 +123,7 @@ pub(super) fn span_of_broadcast(navigation: &Navigation, midnight: GpsTime) -> [
     })
 }
 
-/// Satellites as they are named in files; of many, the first and how many more.
+/// The names of satellites as in files; of many, the first ones and the number of the others.
 pub fn names(satellites: impl IntoIterator<Item = u8>) -> String {
     const MOST: usize = 12;
     let mut names: Vec<_> = satellites.into_iter().map(satellite_name).collect();

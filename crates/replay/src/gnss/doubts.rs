@@ -1,4 +1,4 @@
-//! What a user should know of what a filter made of a recording.
+//! Doubts and warnings about the solution of a recording.
 
 use kestirim_health::{Health, Reason};
 use kestirim_ppp_filter::Contradiction;
@@ -7,14 +7,15 @@ use super::followed::Followed;
 use super::recording::POOR;
 
 impl Followed {
-    /// What speaks against all of it, whatever its epochs say of themselves: many without a solution.
+    /// The doubts about the whole solution, whatever its epochs say of themselves: many epochs without a solution.
     pub fn doubts(&self) -> Health {
         let (without, with) = (self.outages.count(), self.fixes.len());
         let are_many = without as f64 > POOR * (without + with) as f64;
         Health::GOOD.with(Reason::Dropout, are_many)
     }
 
-    /// A sentence for each kind of epochs without a solution, and about contradictions, phases of no use and jumps of the clock.
+    /// A sentence for each kind of epoch without a solution, and about contradictions, useless phases and jumps of the
+    /// clock.
     pub fn warnings(&self) -> Vec<String> {
         let phases = phases_of_no_use(self);
         let told = contradicted(self).into_iter().chain(phases).chain(clock_jumps(self));
@@ -22,7 +23,7 @@ impl Followed {
     }
 }
 
-/// A sentence about epochs of which the observations contradict the solution.
+/// A sentence about epochs whose observations contradict the solution.
 fn contradicted(followed: &Followed) -> Option<String> {
     let (first, contradiction) = followed.contradictions().next()?;
     let (count, of) = (followed.contradictions().count(), followed.fixes.len());
@@ -46,9 +47,9 @@ fn contradicted(followed: &Followed) -> Option<String> {
     ))
 }
 
-/// A sentence about phases that begin anew all the time.
+/// A sentence about phases whose ambiguities begin anew all the time.
 fn phases_of_no_use(followed: &Followed) -> Option<String> {
-    /// In a street or under trees it is about one in thirty.
+    /// The largest share without a warning; in a street or under trees it is about one in thirty.
     const MOST: f64 = 0.2;
     let share = 2.0 * followed.slips.sum() as f64 / followed.observations.max(1) as f64;
     (share > MOST).then(|| {

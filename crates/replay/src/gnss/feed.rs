@@ -1,4 +1,4 @@
-//! A filter that is fed with one epoch after the other.
+//! A filter that is fed epoch by epoch.
 
 use kestirim_gnss_files::Observed;
 use kestirim_gnss_ppp::{Direction, Geodetic, Receiver};
@@ -13,21 +13,22 @@ use super::outage::{Outage, Unused};
 use super::recording::Recording;
 use super::single::bound;
 
-/// A filter, and what it must be told of the epochs before.
+/// A filter, and what it must be told of earlier epochs.
 #[derive(Debug)]
 pub(super) struct Feed<const N: usize> {
     filter: PppFilter<N>,
     order: Order,
     systems: Systems,
     with_residuals: bool,
-    /// Which satellites were lost since the filter took them in: an epoch without a solution tells it nothing.
+    /// The satellites whose lock was lost since the filter last used them: an epoch without a solution tells the filter
+    /// nothing.
     lost: [bool; 256],
-    /// Tells which satellites stand below the mask, and nothing else.
+    /// An approximate position, used only to tell which satellites stand below the mask.
     about: Option<Vector3<f64>>,
 }
 
 impl<const N: usize> Feed<N> {
-    /// With a fresh filter.
+    /// A feed with a fresh filter.
     pub(super) fn new(config: &Config, recording: &Recording, pass: Pass) -> Self {
         let Pass { systems, order, with_residuals, .. } = pass;
         let about = recording.approximate_position().map(Vector3::from);
@@ -35,7 +36,7 @@ impl<const N: usize> Feed<N> {
         Self { filter, order, systems, with_residuals, lost: [false; 256], about }
     }
 
-    /// Takes an epoch of a recording, and tells what became of it.
+    /// Processes an epoch of a recording and adds the outcome to `followed`.
     pub(super) fn take(
         &mut self,
         recording: &Recording,
@@ -46,7 +47,7 @@ impl<const N: usize> Feed<N> {
     ) {
         let t = recording.seconds(epoch);
         let mut unused = Unused { observed: self.observed(epoch).count(), ..Unused::default() };
-        // A file says what was lost since the epoch before.
+        // A file tells what was lost since the previous epoch.
         if self.order == Order::Forwards {
             self.note_lost(epoch);
         }
@@ -93,7 +94,7 @@ impl<const N: usize> Feed<N> {
         followed.unused.add(&unused);
     }
 
-    /// What was observed of the satellites that serve.
+    /// The observations of the satellites that are used.
     fn observed<'a>(&self, epoch: &'a Epoch) -> impl Iterator<Item = &'a Observed> + use<'a, N> {
         let systems = self.systems;
         epoch.satellites.iter().filter(move |observed| systems.has(observed.prn))
@@ -109,7 +110,7 @@ impl<const N: usize> Feed<N> {
     }
 }
 
-/// How many satellites stand below the mask.
+/// The number of satellites below the elevation mask.
 fn below(observations: &[SatelliteObservation<'_>], place: &Vector3<f64>, mask: f64) -> usize {
     let geodetic = Geodetic::from_ecef(place);
     let is_below = |observation: &&SatelliteObservation<'_>| {

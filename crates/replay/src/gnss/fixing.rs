@@ -1,4 +1,4 @@
-//! Whole ambiguities beside a filter, and what came of them.
+//! Fixing of ambiguities to integers alongside a filter, and its outcome.
 
 use kestirim_gnss_ppp::{Geodetic, GpsTime};
 use kestirim_ppp_filter::{
@@ -7,26 +7,27 @@ use kestirim_ppp_filter::{
 
 use super::recording::Recording;
 
-/// Below this standard deviation a position is a converged one, m, as the filter has it.
+/// The standard deviation below which a position has converged, m, as in the filter.
 const CONVERGED: f64 = 0.1;
 
-/// What came of whole ambiguities.
+/// The outcome of fixing ambiguities to integers.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Fixing {
-    /// In how many epochs there were some.
+    /// The number of epochs with fixed ambiguities.
     pub epochs: usize,
-    /// When there were some for the first time, s since the midnight before the first epoch.
+    /// The first time with fixed ambiguities, s since the midnight before the first epoch.
     pub first_s: Option<f64>,
-    /// How many ambiguities between satellites were whole in the last of them, …
+    /// The number of ambiguities between satellites that were fixed in the last of these epochs.
     pub fixed: usize,
-    /// … and of the integers that were found last how much farther the second nearest were, in squares, …
+    /// The ratio test of the integers found last: the squared distance of the second nearest divided by that of the
+    /// nearest.
     pub ratio: f64,
-    /// … and how probable they were.
+    /// The probability that the last integers found were right.
     pub success_rate: f64,
 }
 
-/// Makes ambiguities whole where that passes the tests. The filter keeps its own.
+/// Fixes ambiguities to integers where that passes the tests. The filter keeps its own.
 pub(super) struct Fixer<'a, const N: usize> {
     recording: &'a Recording,
     ambiguities: AmbiguityFixer<N>,
@@ -38,7 +39,7 @@ impl<'a, const N: usize> Fixer<'a, N> {
         Self { recording, ambiguities: AmbiguityFixer::new(), fixing: Fixing::default() }
     }
 
-    /// Puts the position with whole ambiguities in the place of the filter's, if they are known.
+    /// Replaces the filter's position by the one with fixed ambiguities, if they are known.
     pub(super) fn fix(
         &mut self,
         time: GpsTime,
@@ -64,7 +65,7 @@ impl<'a, const N: usize> Fixer<'a, N> {
         }
         let seconds = time.since(self.recording.midnight);
         let Fixing { epochs, first_s, .. } = self.fixing;
-        // Backwards the first one comes last.
+        // Backwards, the earliest time comes last.
         let first_s = Some(first_s.map_or(seconds, |first| first.min(seconds)));
         self.fixing = Fixing { epochs: epochs + 1, first_s, fixed, ratio, success_rate };
     }

@@ -1,4 +1,4 @@
-//! One filter, fed with a recording, and what becomes of each observation.
+//! A recording fed to one filter, and the outcome for each observation.
 
 use std::collections::BTreeMap;
 
@@ -16,18 +16,18 @@ use kestirim_ppp_filter::{Config, Contradiction, Health, SatelliteReport, Slippe
 use kestirim_robust_kalman::{Decision, Reason};
 use nalgebra::Vector3;
 
-/// Numbers of codes and of phases.
+/// Counts of codes and of phases.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Both {
-    /// Codes.
+    /// The number of codes.
     pub code: usize,
-    /// Phases.
+    /// The number of phases.
     pub phase: usize,
 }
 
 impl Both {
-    /// Codes and phases.
+    /// The number of codes and phases together.
     pub const fn sum(self) -> usize {
         self.code + self.phase
     }
@@ -39,24 +39,24 @@ impl Both {
     }
 }
 
-/// Slips by what showed them.
+/// Counts of cycle slips by what showed them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Slips {
-    /// The receiver said so.
+    /// Slips that the receiver reported.
     pub loss_of_lock: usize,
-    /// A jump of L1 − L2.
+    /// Slips shown by a jump of L1 − L2.
     pub geometry_free: usize,
-    /// A jump of the Melbourne–Wübbena combination.
+    /// Slips shown by a jump of the Melbourne–Wübbena combination.
     pub melbourne_wuebbena: usize,
-    /// A phase that contradicted all others for several epochs.
+    /// Phases that contradicted all others for several epochs.
     pub contradicted: usize,
-    /// All phases jumped against their codes at once.
+    /// Slips at which all phases jumped against their codes at once.
     pub clock: usize,
 }
 
 impl Slips {
-    /// All of them.
+    /// The number of slips of all kinds.
     pub const fn sum(self) -> usize {
         self.loss_of_lock
             + self.geometry_free
@@ -67,7 +67,7 @@ impl Slips {
 
     fn count(&mut self, slipped: Option<Slipped>) {
         match slipped {
-            // A satellite that comes, or comes back, is no slip.
+            // A satellite that appears or reappears is not a slip.
             None | Some(Slipped::New | Slipped::Seen(Slip::Gap)) => {}
             Some(Slipped::Seen(Slip::LossOfLock)) => self.loss_of_lock += 1,
             Some(Slipped::Seen(Slip::GeometryFree)) => self.geometry_free += 1,
@@ -78,21 +78,21 @@ impl Slips {
     }
 }
 
-/// What became of one satellite.
+/// The outcome for one satellite.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Tally {
-    /// In how many epochs it was used.
+    /// The number of epochs in which it was used.
     pub epochs: usize,
-    /// Its observations that were rejected.
+    /// The numbers of its observations that were rejected.
     pub rejected: Both,
-    /// In how many epochs its orbit was not known.
+    /// The number of epochs in which its orbit was unknown.
     pub no_orbit: usize,
-    /// In how many epochs its clock was not known.
+    /// The number of epochs in which its clock was unknown.
     pub no_clock: usize,
 }
 
-/// The end of a replay.
+/// The last solution of a replay.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Last {
     /// Standard deviations to the east, north and up, m.
@@ -103,85 +103,86 @@ pub struct Last {
     pub wet_delay: f64,
 }
 
-/// Where the marker was found at a time.
+/// The position of the marker at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fix {
-    /// Seconds since the midnight before the first epoch.
+    /// The time, s since the midnight before the first epoch.
     pub t: f64,
-    /// ECEF, m.
+    /// The position (ECEF), m.
     pub position: Vector3<f64>,
 }
 
-/// What a filter made of a recording.
+/// The result of a filter for a recording.
 #[derive(Debug, Clone, Default)]
 pub struct Followed {
-    /// How many epochs there were.
+    /// The number of epochs.
     pub epochs: usize,
-    /// Those with a solution.
+    /// The positions of the epochs with a solution.
     pub fixes: Vec<Fix>,
-    /// Their standard deviations to the east, north and up, m.
+    /// The standard deviations of the positions to the east, north and up, m.
     pub deviations: Vec<[f64; 3]>,
-    /// Of each of them the receiver's clock ahead of GPS time, m, and the zenith delay of the wet troposphere, m.
+    /// For each position, the receiver clock's lead over GPS time, m, and the zenith delay of the wet troposphere, m.
     pub delays: Vec<[f64; 2]>,
-    /// The last of them.
+    /// The last solution.
     pub last: Option<Last>,
-    /// How far each of them is to be trusted.
+    /// How far each position is to be trusted.
     pub healths: Vec<Health>,
-    /// How many satellites each of them is from.
+    /// The number of satellites used for each position.
     pub heard: Vec<usize>,
-    /// When all phases jumped against their codes, s, and by how many milliseconds; that was repaired.
+    /// The times at which all phases jumped against their codes, s, and by how many milliseconds; the jumps were
+    /// repaired.
     pub clock_jumps: Vec<(f64, i32)>,
-    /// When both directions of a smoothed track disagreed, s.
+    /// The times at which both directions of a smoothed track disagreed, s.
     pub apart: Vec<f64>,
-    /// Since when all positions have been converged ones, s.
+    /// The time since which all positions have been converged, s.
     pub converged_since: Option<f64>,
-    /// Observations that the filter was given.
+    /// The number of observations given to the filter.
     pub observations: usize,
-    /// Those without weight …
+    /// Observations with zero weight.
     pub rejected: Both,
-    /// … and those with less than the full one.
+    /// Observations with reduced weight.
     pub deweighted: Both,
-    /// Ambiguities begun anew.
+    /// Ambiguities that began anew, by their cause.
     pub slips: Slips,
-    /// Observed satellites that the filter was not given.
+    /// Observed satellites that were not given to the filter.
     pub unused: Unused,
-    /// By satellite.
+    /// The outcome for each satellite.
     pub satellites: BTreeMap<u8, Tally>,
-    /// What came of whole ambiguities, if they were asked for.
+    /// The outcome of fixing ambiguities to integers, if that was requested.
     pub fixing: Option<Fixing>,
     /// The epochs without a solution.
     pub outages: Outages,
-    /// Of each satellite in each epoch, if that was asked for.
+    /// The time and the report of each satellite in each epoch, if that was requested.
     pub residuals: Vec<(f64, SatelliteReport)>,
 }
 
-/// In which order epochs are given to a filter.
+/// The order in which epochs are given to a filter.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Order {
-    /// As they were observed.
+    /// In the order of observation.
     #[default]
     Forwards,
     /// From the last to the first.
     Backwards,
 }
 
-/// How a filter goes through epochs.
+/// The settings of one pass of a filter through epochs.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Pass {
-    /// Whose satellites it is given.
+    /// The systems whose satellites are used.
     pub systems: Systems,
-    /// In which order.
+    /// The order of the epochs.
     pub order: Order,
-    /// From what positions are made.
+    /// What positions are computed from.
     pub method: Method,
-    /// Whether ambiguities become whole numbers.
+    /// Whether ambiguities are fixed to integers.
     pub ambiguities: Ambiguities,
-    /// Whether to keep what became of each observation.
+    /// Whether to keep the outcome of each observation.
     pub with_residuals: bool,
 }
 
-/// Feeds a filter with `epochs`. `next` is called after each. What came of them is in the order of time, however they
-/// were gone through.
+/// Feeds `epochs` to a filter, calling `next` after each. The result is in the order of time, whatever the order of the
+/// pass.
 pub fn follow(
     recording: &Recording,
     epochs: &[Epoch],
@@ -230,13 +231,13 @@ fn feed<const N: usize>(
 }
 
 impl Followed {
-    /// The positions to the east, north and up of a place (ECEF, m), m.
+    /// The positions relative to a place (ECEF, m), to the east, north and up, m.
     pub fn enu_from(&self, place: &Vector3<f64>) -> Vec<[f64; 3]> {
         let rotation = Geodetic::from_ecef(place).enu_from_ecef();
         self.fixes.iter().map(|fix| (rotation * (fix.position - place)).into()).collect()
     }
 
-    /// When solutions were not to be relied upon, s, and why.
+    /// The times at which solutions were not to be relied upon, s, and why.
     pub fn contradictions(&self) -> impl Iterator<Item = (f64, Contradiction)> {
         self.fixes.iter().zip(&self.healths).filter_map(|(fix, health)| match health {
             Health::Contradicted(contradiction) => Some((fix.t, *contradiction)),
@@ -244,7 +245,7 @@ impl Followed {
         })
     }
 
-    /// Puts what was gone through from its end into the order of time.
+    /// Puts the results of a backward pass into the order of time.
     fn turn(&mut self) {
         self.fixes.reverse();
         self.deviations.reverse();

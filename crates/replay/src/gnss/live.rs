@@ -1,4 +1,4 @@
-//! A receiver's positions from its own stream, while that comes.
+//! Live positions of a receiver, from its own stream.
 
 use kestirim_gnss_files::{Carriers, Error, Kind};
 use kestirim_gnss_ppp::{Corrections, GpsTime};
@@ -12,70 +12,70 @@ use super::recording::{Paths, Recording};
 use super::shelf::Shelf;
 use super::single::single;
 
-/// So much of the stream is kept, s: satellites send their ephemerides again and again, and those serve for two hours. A stream of which the
-/// newer half cannot be read alone, as it tells its week but once, is kept for twice as long, and so on.
+/// The span of the stream that is kept, s: satellites repeat their ephemerides, which serve for two hours. If the newer
+/// half of a stream cannot be read alone, because it tells its week only once, twice the span is kept, and so on.
 const KEPT_S: f64 = 10_800.0;
-/// More bytes are never kept.
+/// The largest number of bytes that are kept.
 const MOST: usize = 1 << 25;
-/// Of a stream that comes without a pause, what has come is looked at when it is this part of what is kept.
+/// In a stream without pauses, new data are processed once they exceed one part in this many of what is kept.
 const NEW: usize = 8;
 
-/// An epoch is of a wrong time if it is so far ahead of all that came after it, s.
+/// An epoch that is further ahead than this of all later ones has a wrong time, s.
 const AHEAD_S: f64 = 1.0;
-/// The beginning of a stream is looked for in steps of so many bytes, and no message is longer than this.
+/// The beginning of a stream is searched in steps of this many bytes; no message is longer than `LONGEST`.
 const STEP: usize = 2048;
 const LONGEST: usize = 8192;
-/// What is told while nothing else comes.
+/// The message shown while nothing else has come.
 const NO_STREAM: &str = "no message of UBX or RTCM 3 has come yet: let the receiver send RXM-RAWX and RXM-SFRBX, or MSM4 or MSM7";
 
-/// A receiver's positions from its own stream, UBX or RTCM 3, while that comes.
+/// Live positions of a receiver, from its own stream of UBX or RTCM 3.
 ///
-/// What has come is kept and read again, three hours of it at most: what a signal is worth, which week it is and which satellites
-/// are healthy is known as well as in a recording. Each epoch is given to the filter once, when the next one has begun, as an epoch may
-/// come in several messages.
+/// The stream is kept, three hours at most, and read again, so that the quality of signals, the week and the health of
+/// satellites are known as well as in a recording. Each epoch is given to the filter once, when the next one has begun,
+/// as an epoch may come in several messages.
 #[derive(Debug)]
 pub struct Live {
     config: Config,
     pass: Pass,
     corrections: Corrections,
     kept: Vec<u8>,
-    /// Of it is kept so much, s.
+    /// The span of the stream that is kept, s.
     kept_s: f64,
-    /// Bytes that were not looked at.
+    /// The number of bytes that have not been processed.
     fresh: usize,
-    /// What could not be read is not looked at before it is so much.
+    /// The size that data must reach before they are read again after they could not be read, in bytes.
     enough: usize,
-    /// On which carriers the filter has been fed: with others it begins anew.
+    /// The carriers with which the filter has been fed: with others it begins anew.
     carriers: Vec<Carriers>,
     feed: Option<Box<Feed<STATES_OF_ALL>>>,
     /// The last epoch that was fed.
     until: Option<GpsTime>,
-    /// How many epochs there were, and how many of them had a solution.
+    /// The number of epochs, and of those with a solution.
     counts: [usize; 2],
     now: Option<Now>,
-    /// What came of the stream when it was looked at last: what speaks against it, or why there is nothing yet.
+    /// The result of the last processing of the stream: the warnings, or why there is no position yet.
     told: Vec<String>,
-    /// Why the last epoch has no solution.
+    /// The reason why the last epoch has no solution.
     outage: Option<String>,
 }
 
-/// Where a receiver is.
+/// The current position of a receiver.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Now {
-    /// When, in UTC.
+    /// The time in UTC.
     pub utc: String,
-    /// Where, since the midnight before the first epoch that is kept.
+    /// The position; its time counts from the midnight before the first epoch that is kept.
     pub fix: Fix,
     /// Standard deviations to the east, north and up, m.
     pub sd_enu: [f64; 3],
     /// How far the position is to be trusted.
     pub health: Health,
-    /// How many satellites it is from.
+    /// The number of satellites used.
     pub satellites: usize,
 }
 
 impl Live {
-    /// Before anything has come.
+    /// A receiver of which nothing has come yet.
     pub fn new(config: Config, pass: Pass, corrections: Corrections) -> Self {
         Self {
             config,
@@ -95,15 +95,15 @@ impl Live {
         }
     }
 
-    /// Takes in what came; whether it is so much that it is to be looked at before more is taken in.
+    /// Takes new bytes; returns whether there are so many that they should be processed before more are taken.
     pub fn hear(&mut self, bytes: &[u8]) -> bool {
         self.kept.extend_from_slice(bytes);
         self.fresh += bytes.len();
         self.fresh > self.kept.len() / NEW
     }
 
-    /// Looks at what came since the last time. The products are those of `paths`, of which `obs` names the stream; `is_end` says that no
-    /// more will come.
+    /// Processes what came since the last call. The products are those of `paths`, in which `obs` names the stream;
+    /// `is_end` says that no more will come.
     pub fn look(&mut self, paths: &Paths<'_>, shelf: &Shelf, is_end: bool) {
         let is_news = self.fresh > 0 && self.kept.len() >= self.enough;
         if !is_news && !is_end {
@@ -122,7 +122,7 @@ impl Live {
                     self.forget(paths, shelf);
                 }
             }
-            // Not enough of it has come, or nothing that can be read.
+            // Not enough of the stream has come, or nothing that can be read.
             Err(error) => {
                 self.enough = self.kept.len() + self.kept.len() / NEW;
                 self.told = vec![format!("no position yet: {}", problem(error, paths))];
@@ -134,12 +134,12 @@ impl Live {
         }
     }
 
-    /// Lets go of what comes before the stream, such as the lines of a receiver that has not been told to send one yet; whether it is
-    /// there.
+    /// Drops what precedes the stream, such as the lines of a receiver that has not yet been told to send one; returns
+    /// whether the stream has begun.
     fn find_beginning(&mut self) -> bool {
         let is_stream = |bytes: &[u8]| matches!(Kind::of(bytes), Some(Kind::Ubx | Kind::Rtcm));
         let begins = (0..self.kept.len()).step_by(STEP).find(|&at| is_stream(&self.kept[at..]));
-        // A message may have begun in what came last.
+        // A message may have begun in the last bytes.
         let last = self.kept.len().saturating_sub(LONGEST);
         self.kept.drain(..begins.unwrap_or(last));
         begins.is_some()
@@ -151,7 +151,7 @@ impl Live {
             self.carriers = recording.carriers().to_vec();
             self.feed = None;
         }
-        // A time that was ahead would be waited for.
+        // Without this, the filter would wait for a time that was ahead by mistake.
         let last = epochs.last().map(|epoch| epoch.time);
         if let (Some(until), Some(last)) = (self.until, last)
             && until.since(last) > AHEAD_S
@@ -199,17 +199,17 @@ impl Live {
         self.told.extend(self.outage.clone());
     }
 
-    /// Lets go of the older half of what is kept.
+    /// Drops the older half of what is kept.
     fn forget(&mut self, paths: &Paths<'_>, shelf: &Shelf) {
         let newer = self.kept.len() / 2;
         match Recording::of_stream(self.kept[newer..].to_vec(), paths, shelf) {
             Ok(_) => drop(self.kept.drain(..newer)),
-            // Its only message of the week is in the older half.
+            // The only message with the week is in the older half.
             Err(_) => self.kept_s *= 2.0,
         }
     }
 
-    /// Where the receiver is, or was when it was last known; none before the first solution.
+    /// The current or last known position; `None` before the first solution.
     pub const fn now(&self) -> Option<&Now> {
         self.now.as_ref()
     }
@@ -219,18 +219,18 @@ impl Live {
         self.now.is_some() && self.outage.is_none()
     }
 
-    /// How many epochs there were, and how many of them had a solution.
+    /// The number of epochs, and of those with a solution.
     pub const fn counts(&self) -> [usize; 2] {
         self.counts
     }
 
-    /// What speaks against the stream, or why there is no position yet: a sentence each.
+    /// The warnings about the stream, or why there is no position yet: a sentence each.
     pub fn warnings(&self) -> &[String] {
         &self.told
     }
 }
 
-/// Why there is no position yet, without the name of the stream, which is that of no file.
+/// The reason why there is no position yet, without the name of the stream, which is not a file.
 fn problem(error: Error, paths: &Paths<'_>) -> String {
     match error {
         Error::File { path, problem } | Error::Line { path, problem, .. } if path == paths.obs => {
@@ -248,7 +248,7 @@ mod tests {
 
     use super::*;
 
-    /// What is told when this has come, and how much of it is kept.
+    /// The warnings after these bytes, and the number of bytes kept.
     fn told(bytes: &[u8]) -> (String, usize) {
         let paths = Paths {
             obs: Path::new("stream"),

@@ -1,7 +1,8 @@
-//! A receiver of satellite navigation: precise point positioning from files.
+//! Satellite navigation: precise point positioning from files.
 //!
-//! A [`Recording`] is read with all that must be known for a position, [`follow`] makes a [`Followed`] of it. Positions are
-//! ECEF, m; times s since the midnight before the first epoch. A receiver that is switched on is followed by [`Live`].
+//! A [`Recording`] is read with all that must be known for a position; [`follow`] computes a [`Followed`] from it.
+//! Positions are ECEF, m; times are s since the midnight before the first epoch. [`Live`] follows a receiver that is
+//! running.
 
 mod accuracy;
 mod agreement;

@@ -1,30 +1,33 @@
-//! Samples of orbits that lie off the curve through their neighbours: a cut digit, a wrong day, a manoeuvre that is not told.
+//! Detection of orbit samples that lie off the curve through their neighbours: a lost digit, a wrong day, an
+//! unannounced manoeuvre.
 
 use kestirim_gnss_ppp::OrbitSample;
 
-/// So many samples make a curve with one to spare.
+/// The number of samples that define a curve with one to spare.
 const POINTS: usize = 9;
-/// Binomials of eight: a sample's share in the eighth difference of nine.
+/// The binomial coefficients of eight: the weights of nine samples in their eighth difference.
 const SHARES: [f64; POINTS] = [1.0, 8.0, 28.0, 56.0, 70.0, 56.0, 28.0, 8.0, 1.0];
-/// Where a sample may be among them, the best places first: at the ends little is known of it.
+/// The places of a sample among the nine, the best ones first: at the ends little is known of it.
 const PLACES: [usize; 5] = [4, 3, 5, 2, 6];
-/// No satellite is so far off a polynomial of its neighbours, m: the eccentric ones of Galileo are 13 m …
+/// The distance from the polynomial of its neighbours beyond which a sample is wrong, m; eccentric Galileo satellites
+/// reach 13 m at steps of a quarter of an hour.
 const FARTHEST: f64 = 30.0;
-/// … at quarters of an hour, s; coarser samples tell nothing.
+/// The longest step between samples that are examined, s: coarser ones tell nothing.
 const LONGEST_STEP: f64 = 901.0;
 
-/// A sample that can be looked at: its index, its place among the nine, and how far it is off the others' polynomial, m.
+/// A sample that can be examined: its index, its place among the nine, and its distance from the polynomial of the
+/// others, m.
 type Misfit = (usize, usize, f64);
 
-/// Takes out what is off the curve, the worst first; what is around a gap then is not used either. Of the first two samples and
-/// of the last two before an end or a gap little is known: they go with the third, if that looks off. How many were taken out,
-/// and how far off the worst looked, m.
+/// Removes samples that are off the curve, the worst first; what is around a gap is then not used either. Of the first
+/// two samples and of the last two before an end or a gap little is known: they go with the third if that looks off.
+/// Returns how many were removed, and how far off the worst looked, m.
 pub(super) fn remove(samples: &mut Vec<OrbitSample>) -> Option<(usize, f64)> {
     let (mut count, mut farthest) = (0, 0.0);
     let mut from = 0;
     loop {
         let misfits = (from..samples.len()).filter_map(|index| misfit(samples, index));
-        // The first one that is off, and the worst of those that it draws along.
+        // The first sample that is off, and the worst of those that it affects.
         let Some((first, ..)) = misfits.clone().find(|it| it.2 > FARTHEST) else { break };
         let near = misfits.take_while(|it| it.0 < first + POINTS);
         let Some((worst, place, most)) = near.max_by(|a, b| a.2.total_cmp(&b.2)) else { break };
@@ -41,7 +44,7 @@ pub(super) fn remove(samples: &mut Vec<OrbitSample>) -> Option<(usize, f64)> {
     (count > 0).then_some((count, farthest))
 }
 
-/// How far a sample is off the polynomial through eight others around it; none where they are not equidistant.
+/// The distance of a sample from the polynomial through eight others around it; `None` if they are not equidistant.
 fn misfit(samples: &[OrbitSample], index: usize) -> Option<Misfit> {
     PLACES.into_iter().find_map(|place| {
         let first = index.checked_sub(place)?;
@@ -64,7 +67,8 @@ mod tests {
     use super::*;
     use nalgebra::Vector3;
 
-    /// A day of a satellite on a circle, each quarter of an hour; some samples are off by so much, m.
+    /// A day of a satellite on a circular orbit, every quarter of an hour; some samples are off by the given distance,
+    /// m.
     fn orbit(off: &[(usize, f64)]) -> Vec<OrbitSample> {
         let sample = |k: usize| {
             let second = 900.0 * k as f64;
@@ -91,7 +95,7 @@ mod tests {
         assert_eq!(gone, [40, 80]);
         let (count, farthest) = found.expect("both");
         assert!(count == 2 && (farthest - 1000.0).abs() < 1.0, "{farthest}");
-        // At the ends it could be any of three.
+        // At the ends it could be any of the three.
         for k in 0..3 {
             assert_eq!(left(&[(k, 2000.0)]).1, [0, 1, 2]);
             assert_eq!(left(&[(95 - k, 2000.0)]).1, [93, 94, 95]);
@@ -100,7 +104,7 @@ mod tests {
 
     #[test]
     fn what_is_next_to_a_gap_is_looked_at_from_the_other_side() {
-        // What is beside both may go with them.
+        // Samples beside both may go with them.
         let (_, gone) = left(&[(40, 1000.0), (41, 800.0)]);
         assert!([40, 41].iter().all(|k| gone.contains(k)) && gone.len() <= 4, "{gone:?}");
         let mut few = orbit(&[]);

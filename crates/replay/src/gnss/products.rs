@@ -1,4 +1,4 @@
-//! Precise products as the filter wants them: a satellite's orbit, clock and antenna at an instant.
+//! Precise products, as the filter needs them: a satellite's orbit, clock and antenna at an instant.
 
 use kestirim_gnss_files::{
     self as files, Antenna, AntennaModel, Antennas, Clocks, Observed, Orbits,
@@ -13,10 +13,10 @@ use super::model::{carriers, clock_sample, orbit_sample, patterns};
 use super::orbit_jumps;
 use super::whole_biases::WholeBiases;
 
-/// Clocks are bridged over the interval of the coarsest products, s.
+/// The longest gap between clock samples that is interpolated, s: the interval of the coarsest products.
 const LONGEST_CLOCK_GAP: f64 = 900.0;
 
-/// Why a satellite that was observed does not serve.
+/// Why an observed satellite cannot be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unusable {
     /// A code or a phase is missing.
@@ -27,18 +27,19 @@ pub enum Unusable {
     NoClock,
 }
 
-/// One satellite's products.
+/// The products of one satellite.
 #[derive(Debug, Default)]
 pub struct Satellite {
-    /// Its orbit, in the order of time.
+    /// The orbit, in the order of time.
     pub orbit: Vec<OrbitSample>,
-    /// Its clock, in the order of time.
+    /// The clock, in the order of time.
     pub clock: Vec<ClockSample>,
-    /// Its antenna, where known.
+    /// The antenna, if known.
     pub antenna: Option<Antenna>,
 }
 
-/// The edition of the antennas that products were made with: that of the clocks, into which another's offset would go.
+/// The edition of the antenna models with which products were made: that of the clocks, which would absorb the offset
+/// of another edition.
 pub(super) fn antenna_model(orbits: &Orbits, clocks: Option<&Clocks>) -> Option<AntennaModel> {
     clocks.and_then(|clocks| clocks.antenna_model).or(orbits.antenna_model)
 }
@@ -49,15 +50,15 @@ pub struct Products {
     reference: GpsTime,
     satellites: Vec<Satellite>,
     whole: WholeBiases,
-    /// Satellites with samples off their orbit, how many of each were taken out, and how far they were off, m.
+    /// Satellites with samples off their orbit, the number of samples removed for each, and how far they were off, m.
     jumps: Vec<(u8, usize, f64)>,
-    /// In place of all of them, where there are no precise ones.
+    /// Broadcast ephemerides, which replace the products if there are no precise ones.
     broadcast: Option<Broadcast>,
 }
 
 impl Products {
-    /// Products for observations that begin at `start`: clocks from `clocks` if there are any, from
-    /// the orbit files otherwise.
+    /// Products for observations that begin at `start`. Clocks are from `clocks` if given, otherwise from the orbit
+    /// files.
     pub fn new(
         start: files::GpsTime,
         orbits: &Orbits,
@@ -88,7 +89,7 @@ impl Products {
                     .collect(),
             };
             let antenna = antennas.satellite(prn, start);
-            // Where it is not known how that edition has it, another's is better than none.
+            // If that edition's values are not known, another's are better than none.
             let as_made = antenna.zip(model).and_then(|(antenna, model)| antenna.in_model(model));
             let antenna = as_made.or_else(|| antenna.cloned());
             Satellite { orbit, clock, antenna }
@@ -97,7 +98,7 @@ impl Products {
         Self { reference, satellites, whole: WholeBiases::default(), jumps, broadcast: None }
     }
 
-    /// Products of which all samples count from `reference`: the satellites in the order of their numbers, from 1.
+    /// Products whose samples all count from `reference`: the satellites in the order of their numbers, from 1.
     pub fn of_satellites(
         reference: GpsTime,
         satellites: impl IntoIterator<Item = Satellite>,
@@ -107,13 +108,13 @@ impl Products {
         Self { reference, satellites, whole, jumps: Vec::new(), broadcast: None }
     }
 
-    /// What satellites broadcast, in place of products.
+    /// Broadcast ephemerides in place of products.
     pub(super) fn of_broadcast(start: files::GpsTime, broadcast: Broadcast) -> Self {
         let nothing = Self::of_satellites(GpsTime::new(start.day(), 0.0), []);
         Self { broadcast: Some(broadcast), ..nothing }
     }
 
-    /// A warning of samples that were off their orbit, and are not used.
+    /// A warning about samples that were off their orbit and are not used.
     pub(super) fn jumps(&self) -> Option<String> {
         let farthest = self.jumps.iter().map(|(_, _, metres)| *metres).reduce(f64::max)?;
         let count: usize = self.jumps.iter().map(|(_, count, _)| count).sum();
@@ -123,26 +124,26 @@ impl Products {
         ))
     }
 
-    /// What satellites broadcast, if that serves in place of products.
+    /// The broadcast ephemerides, if they are used in place of products.
     pub const fn broadcast(&self) -> Option<&Broadcast> {
         self.broadcast.as_ref()
     }
 
-    /// The same with biases that make ambiguities whole.
+    /// Adds the biases that make ambiguities integers.
     #[must_use]
     pub(super) fn with_whole(self, whole: WholeBiases) -> Self {
         Self { whole, ..self }
     }
 
-    /// The biases of satellites that make ambiguities whole.
+    /// The satellite biases that make ambiguities integers.
     pub const fn whole(&self) -> &WholeBiases {
         &self.whole
     }
 
-    /// An observed satellite with its state when it sent what was received at `time`.
+    /// The observations of a satellite, with its state when it sent what was received at `time`.
     ///
     /// # Errors
-    /// What is missing.
+    /// An [`Unusable`] that says what is missing.
     pub fn observation(
         &self,
         time: GpsTime,
@@ -164,10 +165,10 @@ impl Products {
         })
     }
 
-    /// The codes of an observed satellite, as [`Self::observation`].
+    /// The codes of a satellite, with its state when it sent what was received at `time`, as in [`Self::observation`].
     ///
     /// # Errors
-    /// What is missing.
+    /// An [`Unusable`] that says what is missing.
     pub fn code(
         &self,
         time: GpsTime,
@@ -185,19 +186,19 @@ impl Products {
         })
     }
 
-    /// The edition of a satellite's antenna as it is taken, if it says so.
+    /// The edition of the antenna model used for a satellite, if it is stated.
     pub(super) fn antenna_model(&self, number: u8) -> Option<AntennaModel> {
         self.satellites.get(usize::from(number))?.antenna.as_ref()?.model
     }
 
-    /// The antenna of an observed satellite, where known; what satellites broadcast needs none.
+    /// The phase centres of an observed satellite's antenna, if known; broadcast ephemerides need none.
     fn antenna(&self, observed: &Observed) -> Option<[Pattern<'_>; 2]> {
         let satellite = self.satellites.get(usize::from(observed.prn))?;
         patterns(satellite.antenna.as_ref()?, observed.carriers)
     }
 
-    /// The state of a satellite when it sent what was received at `time` with a code of so many m, and by what its clock is ahead
-    /// of that of the first carrier alone, s, if that is told.
+    /// The state of a satellite when it sent what was received at `time` with a code of `first` m, and the lead of its
+    /// clock over that of the first carrier alone, s, if that is given.
     fn state(
         &self,
         number: u8,
@@ -213,14 +214,15 @@ impl Products {
             samples: &satellite.clock,
             longest_gap: LONGEST_CLOCK_GAP,
         };
-        // By the satellite's own clock; it is off by less than a millisecond, in which it loses nothing.
+        // The time by the satellite's own clock, which is off by less than a millisecond; over that the clock drifts by
+        // nothing.
         let sent = time.plus(-first / SPEED_OF_LIGHT);
         let orbit = Orbit { reference: self.reference, samples: &satellite.orbit };
-        // A satellite that the products do not know at all has no orbit, in the first place.
+        // A satellite that the products do not know at all lacks an orbit in the first place.
         let missing =
             || if orbit.at(sent).is_none() { Unusable::NoOrbit } else { Unusable::NoClock };
-        // Products that begin with the first epoch do not know when its signals were sent, 70 ms before: a clock
-        // runs away by less than a millimetre.
+        // Products that begin with the first epoch do not cover the time when its signals were sent, 70 ms earlier: a
+        // clock drifts by less than a millimetre in it.
         let clock = clock.at(sent).or_else(|| clock.at(time)).ok_or_else(missing)?;
         let orbit = orbit.at(sent.plus(-clock.bias)).ok_or(Unusable::NoOrbit)?;
         let state = SatelliteState {

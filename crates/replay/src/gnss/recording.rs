@@ -1,4 +1,4 @@
-//! What a receiver recorded, and all that must be known for a position.
+//! Recordings of receivers, with all that must be known for a position.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -17,37 +17,38 @@ use super::products::Products;
 use super::shelf::Shelf;
 use super::told::{Served, Told};
 
-/// Fewer satellites give no position, …
+/// The fewest satellites that give a position.
 pub const FEWEST_SATELLITES: usize = 4;
-/// … and such a share of epochs with fewer, or without a solution, makes a poor day.
+/// The share of epochs with too few satellites, or without a solution, above which a day is poor.
 pub(super) const POOR: f64 = 0.1;
-/// Where the files are.
+/// The paths of the files.
 #[derive(Debug, Clone, Copy)]
 pub struct Paths<'a> {
     /// Observations: RINEX 2 to 4, plain or compact, or a recorded stream, UBX or RTCM 3; packed or not.
     pub obs: &'a Path,
-    /// Orbits: one SP3 file or more; without any …
+    /// Orbits: one SP3 file or more. Without any, broadcast ephemerides are used.
     pub sp3: &'a [PathBuf],
-    /// … what satellites broadcast: one RINEX navigation file or stream or more; that of the observations, if these are a stream.
+    /// Broadcast ephemerides: one RINEX navigation file or stream or more; by default the observations themselves, if
+    /// they are a stream.
     pub nav: &'a [PathBuf],
     /// Antennas: one ANTEX file or more.
     pub antex: &'a [PathBuf],
-    /// Clocks; without any those of the orbit files serve.
+    /// Clocks; without any, those of the orbit files are used.
     pub clk: &'a [PathBuf],
-    /// Biases of codes.
+    /// Code biases.
     pub bias: &'a [PathBuf],
-    /// Ocean loading of stations.
+    /// Ocean loading coefficients of stations.
     pub blq: Option<&'a Path>,
-    /// The Earth's rotation.
+    /// Parameters of the Earth's rotation.
     pub erp: Option<&'a Path>,
 }
 
-/// What a receiver recorded, and all that must be known for a position.
+/// The recording of a receiver, with all that must be known for a position.
 #[derive(Debug)]
 pub struct Recording {
-    /// Where the observations were read.
+    /// The path of the observations.
     pub path: PathBuf,
-    /// Where the marker really is, ECEF, m, if that is known; serves accuracy alone.
+    /// The true position of the marker, ECEF, m, if known; used for accuracy alone.
     pub truth: Option<Vector3<f64>>,
     epochs: Vec<Epoch>,
     approximate_position: Option<[f64; 3]>,
@@ -55,34 +56,34 @@ pub struct Recording {
     antenna_delta_hen: [f64; 3],
     products: Products,
     antenna: Option<Antenna>,
-    /// On which carriers satellites are observed, one pair of each system.
+    /// The observed carriers, one pair for each system.
     carriers: Vec<Carriers>,
     loading: Option<OceanLoading>,
-    /// Where the Earth's axis is, rad.
+    /// The position of the Earth's pole, rad.
     pole: Option<[f64; 2]>,
-    /// UTC ahead of GPS time, s.
+    /// UTC minus GPS time, s.
     utc_minus_gps: f64,
-    /// Midnight before the first epoch.
+    /// The midnight before the first epoch.
     pub midnight: GpsTime,
-    /// The first and the last time of an orbit, s since the midnight.
+    /// The first and the last time of the orbits, s since the midnight.
     pub orbits_span: [f64; 2],
-    /// What a user should know of the files, some of it only if a correction is applied.
+    /// Warnings about the files; some concern a correction and count only if that is applied.
     warnings: Vec<(Option<Correction>, String)>,
 }
 
 impl Recording {
-    /// Reads the files; those that do not need each other at the same time.
+    /// Reads the files; those that are independent of each other, in parallel.
     ///
     /// # Errors
-    /// The file, the line, and what was expected there.
+    /// An error that names the file, the line and what was expected there.
     pub fn read(paths: &Paths<'_>) -> Result<Self, Error> {
         Self::read_beside(paths, &Shelf::default())
     }
 
-    /// The same with products that other recordings have read, or that are read for them.
+    /// Reads the files, sharing products with other recordings through the shelf.
     ///
     /// # Errors
-    /// As [`read`](Self::read).
+    /// Those of [`read`](Self::read).
     pub fn read_beside(paths: &Paths<'_>, shelf: &Shelf) -> Result<Self, Error> {
         let biases = shelf.biases(paths.bias)?;
         let (observations, satellites) = rayon::join(
@@ -92,10 +93,10 @@ impl Recording {
         Self::of(paths, shelf, (observations?, satellites?), biases)
     }
 
-    /// The same of a stream, UBX or RTCM 3, that is held in memory; `obs` only names it.
+    /// Reads a stream, UBX or RTCM 3, that is held in memory; `obs` only names it.
     ///
     /// # Errors
-    /// As [`read`](Self::read).
+    /// Those of [`read`](Self::read).
     pub fn of_stream(bytes: Vec<u8>, paths: &Paths<'_>, shelf: &Shelf) -> Result<Self, Error> {
         let biases = shelf.biases(paths.bias)?;
         let text = Text::unpack(paths.obs, bytes)?;
@@ -132,7 +133,7 @@ impl Recording {
         let told = observations.warnings.iter().chain(satellites.warnings());
         let told = told.chain(&antennas.warnings).chain(of_loading).chain(&observations.unserved);
         let mut warnings: Vec<_> = told.map(|warning| (None, warning.to_string())).collect();
-        // In a day the axis goes as far as moves no place by a tenth of a millimetre.
+        // In a day, the motion of the pole moves no place by as much as a tenth of a millimetre.
         let pole = rotation.as_ref().and_then(|rotation| rotation.pole(start));
         if rotation.is_some() && pole.is_none() {
             let warning =
@@ -176,7 +177,7 @@ impl Recording {
         })
     }
 
-    /// A recording that was not read: antennas are points, and oceans have no tides.
+    /// A recording made of simulated data: antennas are points, and oceans have no tides.
     ///
     /// Times count from `midnight`, UTC is `utc_minus_gps` ahead of GPS time, s.
     pub fn simulated(
@@ -203,7 +204,7 @@ impl Recording {
         }
     }
 
-    /// Adds what a user should know, if it concerns a correction only where that is applied.
+    /// Adds a warning; one that concerns a correction counts only if that is applied.
     pub fn warn(&mut self, correction: Option<Correction>, warning: impl Into<String>) {
         self.warnings.push((correction, warning.into()));
     }
@@ -219,7 +220,7 @@ impl Recording {
         self.epochs.iter().filter(move |epoch| !(begin..=end).contains(&self.seconds(epoch)))
     }
 
-    /// What the files show against the recording before anything is solved: many epochs with fewer than four satellites, or
+    /// The doubts that the files raise before anything is solved: many epochs with fewer than four satellites, or
     /// without orbits.
     pub fn doubts(&self) -> Health {
         let are_many = |count: usize| count as f64 > POOR * self.epochs.len() as f64;
@@ -230,37 +231,37 @@ impl Recording {
 
     /// The epochs up to a time, s since the midnight before the first one.
     pub fn epochs(&self, until: Option<f64>) -> &[Epoch] {
-        // A receiver's clock is some milliseconds off at most.
+        // A receiver's clock is off by some milliseconds at most.
         let last = until.map_or(f64::INFINITY, |until| until + 1e-2);
         &self.epochs[..self.epochs.partition_point(|epoch| self.seconds(epoch) <= last)]
     }
 
-    /// Times of the first and the last epoch, s since the midnight before the first one.
+    /// The times of the first and the last epoch, s since the midnight before the first one.
     pub fn span(&self) -> [f64; 2] {
         let ends = [self.epochs.first(), self.epochs.last()];
         ends.map(|epoch| epoch.map_or(0.0, |epoch| self.seconds(epoch)))
     }
 
-    /// What a user should know of the files if some corrections are applied.
+    /// The warnings about the files if the given corrections are applied.
     pub fn warnings(&self, corrections: Corrections) -> impl Iterator<Item = String> {
         let concerns = move |of: &Option<Correction>| of.is_none_or(|it| corrections.has(it));
         let some = self.warnings.iter().filter(move |(of, _)| concerns(of));
         some.map(|(_, warning)| warning.clone())
     }
 
-    /// Seconds since the midnight before the first epoch.
+    /// The time of an epoch, s since the midnight before the first epoch.
     pub fn seconds(&self, epoch: &Epoch) -> f64 {
         epoch.time.since(self.midnight)
     }
 
-    /// The date and time of `seconds` since that midnight in UTC, as 2020-06-25 12:00:00 UTC: GPS time less the leap seconds
-    /// up to the first epoch.
+    /// The date and time in UTC of `seconds` since that midnight, such as 2020-06-25 12:00:00 UTC: GPS time minus the
+    /// leap seconds up to the first epoch.
     pub fn utc(&self, seconds: f64) -> String {
         let utc = calendar(i64::from(self.midnight.day()), seconds + self.utc_minus_gps);
         format!("{} UTC", in_words(utc))
     }
 
-    /// Where the file says that the marker is, ECEF, m.
+    /// The approximate position of the marker that the file gives, ECEF, m.
     pub const fn approximate_position(&self) -> Option<[f64; 3]> {
         self.approximate_position
     }
@@ -270,22 +271,22 @@ impl Recording {
         self.carriers.iter().map(|carriers| carriers.system())
     }
 
-    /// On which carriers satellites are observed, one pair of each system.
+    /// The observed carriers, one pair for each system.
     pub(super) fn carriers(&self) -> &[Carriers] {
         &self.carriers
     }
 
-    /// Whether satellites of other systems than GPS are.
+    /// Whether satellites of systems other than GPS are observed and known.
     pub fn has_others(&self) -> bool {
         self.systems().any(|system| system != System::Gps)
     }
 
-    /// Orbits, clocks and antennas of satellites.
+    /// The orbits, clocks and antennas of the satellites.
     pub const fn products(&self) -> &Products {
         &self.products
     }
 
-    /// Settings of a filter with what broadcast ephemerides need, where those serve.
+    /// The settings of a filter, adapted to broadcast ephemerides if those are used.
     pub fn settled(&self, config: Config) -> Config {
         let Config { correlation_time, gradient, .. } = match self.products.broadcast() {
             Some(_) => Config::broadcast(config.motion),
@@ -294,7 +295,7 @@ impl Recording {
         Config { correlation_time, gradient, ..config }
     }
 
-    /// Whether gradients of the troposphere cannot be told from what orbits and clocks leave.
+    /// Whether gradients of the troposphere cannot be told apart from the errors that orbits and clocks leave.
     pub fn hides_gradients(&self) -> bool {
         let of = |epoch: &Epoch| {
             let known = |observed| self.products.observation(epoch.time, observed).ok();
@@ -303,7 +304,7 @@ impl Recording {
         self.products.broadcast().is_some() || self.epochs.first().is_some_and(of)
     }
 
-    /// Why no ambiguity can become a whole number, if that is so.
+    /// Why no ambiguity can be fixed to an integer, if that is so.
     pub fn never_whole(&self) -> Option<&'static str> {
         if self.receiver_antenna().is_none() {
             Some("the receiver's antenna is not known")
@@ -314,12 +315,12 @@ impl Recording {
         }
     }
 
-    /// The receiver's antenna, if its phase centres are known.
+    /// The name of the receiver's antenna, if its phase centres are known.
     pub fn receiver_antenna(&self) -> Option<&str> {
         self.antenna.as_ref().map(|antenna| antenna.name.as_str())
     }
 
-    /// What is known of the receiver, of which some `corrections` are applied.
+    /// The data of the receiver, with the `corrections` that are to be applied.
     pub fn receiver(&self, corrections: Corrections) -> Receiver<'_> {
         let [up, east, north] = self.antenna_delta_hen;
         let antenna = |system| {
@@ -340,7 +341,7 @@ impl Recording {
     }
 }
 
-/// A path as it can be shown on a line.
+/// A path as it can be shown on one line.
 fn printable(path: &Path) -> String {
     let shown = path.display().to_string();
     shown.chars().map(|letter| if letter.is_control() { '?' } else { letter }).collect()

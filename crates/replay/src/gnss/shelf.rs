@@ -19,10 +19,10 @@ pub struct Shelf {
     rotation: Kept<EarthRotation>,
 }
 
-/// The paths, and the receiver's antenna where that matters.
+/// The paths, and the receiver's antenna if it matters.
 type Key = (Vec<PathBuf>, String);
 
-/// What could not be read is not kept.
+/// A shared place for a product; one that could not be read is not kept.
 type Place<T> = Arc<Mutex<Option<Arc<T>>>>;
 
 #[derive(Debug)]
@@ -35,7 +35,8 @@ impl<T> Default for Kept<T> {
 }
 
 impl<T> Kept<T> {
-    /// Who comes while another one reads waits: `read` must not wait for other threads' work.
+    /// Returns the kept product, or reads it. A thread that comes while another one reads waits: `read` must not wait
+    /// for the work of other threads.
     fn get(
         &self,
         paths: &[PathBuf],
@@ -57,10 +58,11 @@ impl<T> Kept<T> {
 }
 
 impl Shelf {
-    /// Reads the products of a receiver whose antenna is not known, so that what is wrong with them is told before they are wanted.
+    /// Reads the products, those of a receiver whose antenna is not known, so that problems in them are reported before
+    /// they are needed.
     ///
     /// # Errors
-    /// The file, the line, and what was expected there.
+    /// An error that names the file, the line and what was expected there.
     pub fn fill(&self, paths: &Paths<'_>) -> Result<(), Error> {
         if paths.sp3.is_empty() && !paths.nav.is_empty() {
             self.navigation(paths.nav)?;

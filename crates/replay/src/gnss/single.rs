@@ -1,4 +1,4 @@
-//! Positions from the codes of one epoch each.
+//! Positions from the codes of single epochs.
 
 use kestirim_gnss_ppp::Receiver;
 use kestirim_ppp_filter::{CodeObservation, Config, Error, Solution, single_point};
@@ -10,7 +10,7 @@ use super::outage::{Outage, Unused};
 use super::products::Unusable;
 use super::recording::Recording;
 
-/// The position of each epoch from its codes alone. `next` is called after each.
+/// Computes the position of each epoch from its codes alone, calling `next` after each.
 pub(super) fn single(
     recording: &Recording,
     epochs: &[Epoch],
@@ -39,13 +39,13 @@ pub(super) fn single(
         followed.unused.add(&unused);
         next();
     }
-    // Of each satellite one code, and no phase.
+    // There is one code for each satellite, and no phase.
     followed.observations /= 2;
     followed
 }
 
-/// Takes the variances of a solution down to those that the codes of its epoch have by themselves, where it has larger ones.
-/// Errors of ephemerides stay alike for hours: so many epochs tell as much as one, but none of them less.
+/// Reduces the variances of a solution to those of a position from the codes of its epoch alone, where these are
+/// smaller. Errors of ephemerides stay alike for hours: many epochs tell no more than one, but not less either.
 pub(super) fn bound<const N: usize>(
     solution: &mut Solution<N>,
     recording: &Recording,
@@ -74,7 +74,7 @@ fn position(
     single_point(epoch.time, receiver, codes, ionosphere, config)
 }
 
-/// The codes of an epoch; each satellite is told with what is missing of it.
+/// The codes of an epoch; calls `tell` for each satellite with what it lacks, if anything.
 fn codes<'a>(
     recording: &'a Recording,
     epoch: &Epoch,

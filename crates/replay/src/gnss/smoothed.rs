@@ -1,4 +1,4 @@
-//! Forwards and backwards, put together: where a receiver was, given what was observed before and after.
+//! Forward and backward passes combined: the positions of a receiver given the observations before and after.
 
 use kestirim_gnss_ppp::Geodetic;
 use kestirim_ppp_filter::{Contradiction, Health};
@@ -6,20 +6,20 @@ use nalgebra::Vector3;
 
 use super::followed::{Fix, Followed};
 
-/// Times nearer than this are the same, s.
+/// Times closer together than this are the same, s.
 const SAME: f64 = 1e-3;
-/// Both directions are wrong by what neither knows of if they are farther apart than this, in standard deviations of the difference.
-/// Filters of clean days stay below three.
+/// The distance between both directions, in standard deviations of the difference, beyond which they are wrong by
+/// something that neither knows of. Filters of clean days stay below three.
 const APART: f64 = 5.0;
 
 impl Followed {
-    /// What one filter found forwards (`self`) and another `backwards`: the mean of both positions, to the east, north and
-    /// up, weighed by the inverse of their variances (Fraser and Potter 1969). An epoch that contradicts one of them is
-    /// the other's, and so is one that only one has.
+    /// Combines a forward pass (`self`) with a `backwards` one: the mean of both positions, to the east, north and up,
+    /// weighted by the inverse of their variances (Fraser and Potter 1969). An epoch that is contradicted in one of
+    /// them is taken from the other, and so is one that only one has.
     ///
-    /// Both saw the epoch itself, so its noise is in both, and the mean is reported to be no better than the better of them. Where they
-    /// are apart by what their variances do not allow, as those of a receiver that is taken to rest and was moved, it is contradicted,
-    /// and known no better than they are apart.
+    /// Both used the epoch itself, so its noise is in both, and the mean is reported to be no better than the better of
+    /// them. Where they are further apart than their variances allow, as for a receiver that is taken to rest and was
+    /// moved, the position is contradicted, and its standard deviation is the distance between them.
     #[must_use]
     pub fn smoothed(&self, backwards: &Self) -> Self {
         let mut both = Self { epochs: self.epochs, ..Self::default() };
@@ -68,7 +68,7 @@ impl Followed {
         let rotation = Geodetic::from_ecef(&position).enu_from_ecef();
         let apart = rotation * (theirs.fixes[there].position - position);
         let [forth, back] = [ours.deviations[at], theirs.deviations[there]];
-        // What the other direction counts on each axis.
+        // The weight of the other direction on each axis.
         let share = |axis: usize| forth[axis].powi(2) / (forth[axis].powi(2) + back[axis].powi(2));
         let moved = Vector3::from_fn(|axis, _| share(axis) * apart[axis]);
         self.take_one(ours, at);
@@ -98,7 +98,7 @@ mod tests {
     /// At the equator, where up is x, east y and north z.
     const PLACE: Vector3<f64> = Vector3::new(6_378_137.0, 0.0, 0.0);
 
-    /// A position is so far up, known so well, at each time.
+    /// Positions at the given height above `PLACE`, with its standard deviation, at each time.
     fn followed(fixes: &[(f64, f64, f64, Health)]) -> Followed {
         let mut followed = Followed::default();
         for &(t, up, sigma, health) in fixes {

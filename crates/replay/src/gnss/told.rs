@@ -1,4 +1,4 @@
-//! What is told of satellites: precise orbits and clocks, or their own ephemerides.
+//! Sources of satellite data: precise orbits and clocks, or broadcast ephemerides.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -17,30 +17,30 @@ use super::recording::Paths;
 use super::shelf::Shelf;
 use super::whole_biases::WholeBiases;
 
-/// What is told of satellites.
+/// The source of satellite data.
 #[derive(Debug)]
 pub(super) enum Told {
-    /// By a service.
+    /// Orbits and clocks of a service.
     Precise(Arc<Orbits>, Option<Arc<Clocks>>),
-    /// By themselves.
+    /// Ephemerides that the satellites broadcast.
     Broadcast(Arc<Navigation>),
 }
 
-/// A warning, and the correction that it concerns, if it is not all of them.
+/// A warning, with the correction that it concerns, if it does not concern all of them.
 type Doubt = (Option<Correction>, String);
 
-/// What comes of it for a recording.
+/// The satellite data for a recording.
 #[derive(Debug)]
 pub(super) struct Served {
     pub(super) products: Products,
-    /// Satellites that are not to be used.
+    /// The satellites that are not to be used.
     pub(super) left_out: BTreeSet<u8>,
-    /// From when to when there are orbits, s since midnight.
+    /// The span of time covered by orbits, s since midnight.
     pub(super) span: [f64; 2],
 }
 
 impl Told {
-    /// Precise orbits, if there are any, or else what satellites broadcast: a receiver's stream holds that itself.
+    /// Reads precise orbits, if there are any, else broadcast ephemerides, which a receiver's stream contains itself.
     pub(super) fn read(paths: &Paths<'_>, shelf: &Shelf) -> Result<Self, Error> {
         if paths.sp3.is_empty() {
             let own = [paths.obs.to_path_buf()];
@@ -52,7 +52,7 @@ impl Told {
         Ok(Self::Precise(orbits?, clocks?))
     }
 
-    /// Warnings of the readers.
+    /// The warnings of the readers.
     pub(super) fn warnings(&self) -> impl Iterator<Item = &Warning> {
         let (one, other) = match self {
             Self::Precise(orbits, clocks) => {
@@ -63,7 +63,7 @@ impl Told {
         one.iter().chain(other)
     }
 
-    /// What serves observations that begin at `start`; of the antennas, those in `antex`.
+    /// The satellite data for observations that begin at `start`, with the antennas from the file `antex`.
     pub(super) fn serve(
         &self,
         start: GpsTime,

@@ -1,4 +1,4 @@
-//! Tracks as other programs read them: by the ending of the file, RTKLIB's positions, NMEA, KML and GPX.
+//! Tracks in the formats of other programs, by the file extension: RTKLIB's positions, NMEA, KML and GPX.
 
 use std::fmt::Write;
 
@@ -10,21 +10,22 @@ use super::{Followed, Recording};
 
 /// One position of the marker.
 struct Row {
-    /// Year, month, day, hour, minute of GPS time, and its second.
+    /// The calendar date and time of GPS time.
     gps: Calendar,
-    /// The same of UTC.
+    /// The calendar date and time of UTC.
     utc: Calendar,
     latitude: f64,
     longitude: f64,
     height: f64,
-    /// To the east, north and up, m.
+    /// Standard deviations to the east, north and up, m.
     deviations: [f64; 3],
     satellites: usize,
-    /// As RTKLIB and NMEA number it: precise points 6 and 5 where ambiguities are known, others 5 and 2; or nothing.
+    /// Whether the position has converged; `None` if it is contradicted. RTKLIB and NMEA number it 6 and 5 for a
+    /// converged precise point, 6 and 2 for another, 5 and 0 for a contradicted one.
     trusted: Option<bool>,
 }
 
-/// The track in the format of a file's ending: `pos` (RTKLIB), `nmea`, `kml` or `gpx`; none of another ending.
+/// The track in the format of a file extension: `pos` (RTKLIB), `nmea`, `kml` or `gpx`; `None` for any other.
 pub fn track_text(ending: &str, recording: &Recording, followed: &Followed) -> Option<String> {
     let format: fn(&[Row]) -> String = match ending {
         "pos" => pos,
@@ -70,7 +71,7 @@ fn pos(rows: &[Row]) -> String {
         let ([year, month, day, hour, minute], second) = row.gps;
         let quality = if row.trusted.is_some() { 6 } else { 5 };
         let [east, north, up] = row.deviations;
-        // Writing to a text does not fail.
+        // Writing to a `String` does not fail.
         let _ = writeln!(
             text,
             "{year:04}/{month:02}/{day:02} {hour:02}:{minute:02}:{second:06.3} {:14.9} {:14.9} {:10.4} {quality:3} {:3} \
@@ -81,7 +82,7 @@ fn pos(rows: &[Row]) -> String {
     text
 }
 
-/// NMEA 0183: GGA and RMC of each position. The height is the ellipsoid's, of which the geoid is said to be nothing away.
+/// NMEA 0183: GGA and RMC for each position. The height is ellipsoidal, and the geoid separation is given as zero.
 fn nmea(rows: &[Row]) -> String {
     let mut text = String::new();
     let mut say = |body: String| {
@@ -109,7 +110,7 @@ fn nmea(rows: &[Row]) -> String {
     text
 }
 
-/// Degrees and minutes to a tenth of a millimetre or two, and the half of the world.
+/// Degrees and minutes to a tenth of a millimetre or two, and the letter of the hemisphere.
 fn angle(degrees: f64, digits: usize, [positive, negative]: [char; 2]) -> (String, char) {
     const PARTS: i64 = 100_000_000;
     let parts = (degrees.abs() * 60.0 * PARTS as f64).round() as i64;
@@ -123,7 +124,7 @@ fn instant((date, second): Calendar) -> String {
     format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:06.3}Z")
 }
 
-/// A line, and the last place. What is contradicted is left out.
+/// KML: a line and the last place. Contradicted positions are left out.
 fn kml(rows: &[Row]) -> String {
     let place = |row: &Row| format!("{:.9},{:.9},{:.4}", row.longitude, row.latitude, row.height);
     let trusted = || rows.iter().filter(|row| row.trusted.is_some());
@@ -138,7 +139,7 @@ fn kml(rows: &[Row]) -> String {
     )
 }
 
-/// A track, each position with its time. What is contradicted is left out.
+/// GPX: a track, each position with its time. Contradicted positions are left out.
 fn gpx(rows: &[Row]) -> String {
     let point = |row: &Row| {
         format!(

@@ -1,4 +1,4 @@
-//! What must be known of satellites for ambiguities to be whole numbers.
+//! The satellite biases that are needed for integer ambiguities.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use super::model::carriers;
 /// Wide-lane biases of a file of integer clocks, or absolute biases of phases.
 #[derive(Debug, Default)]
 pub struct WholeBiases {
-    /// By day and satellite, cycles.
+    /// Wide-lane biases by day and satellite, cycles.
     wide_lanes: BTreeMap<(i32, u8), f64>,
     biases: Arc<Biases>,
     signals: BTreeMap<u8, Signals>,
@@ -28,8 +28,8 @@ impl WholeBiases {
         Self { wide_lanes, biases, signals: signals.clone() }
     }
 
-    /// The biases of a satellite's phases at a time: absolute ones, if those of its codes are known as well, or else the wide
-    /// lane of the clock file, if the codes are those to which clocks refer or were corrected.
+    /// The biases of a satellite's phases at a time: absolute ones, if those of its codes are known as well; otherwise
+    /// the wide lane of the clock file, if the codes are those to which clocks refer or were corrected.
     pub fn of(&self, satellite: u8, time: GpsTime) -> Option<PhaseBias> {
         let signals = self.signals.get(&satellite)?;
         let at = files::GpsTime::new(time.day(), time.second());
@@ -43,7 +43,7 @@ impl WholeBiases {
         known.then_some(PhaseBias { wide_lane: *wide_lane, ionosphere_free: 0.0 })
     }
 
-    /// Whether none is known of any satellite.
+    /// Whether no bias of any satellite is known.
     pub(super) fn is_empty(&self) -> bool {
         self.wide_lanes.is_empty() && !self.biases.have_phases()
     }

@@ -1,39 +1,41 @@
-//! A foot that stands on what moves: a lift, an escalator, a vehicle.
+//! Detection of a foot that stands on something that moves: a lift, an escalator, a vehicle.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::Sample;
 use crate::metrics::median;
 
-/// A foot that turns by less stands, rad/s: even a bare chip's zero is within it.
+/// The angular rate below which a foot stands, rad/s: even a bare chip's zero is within it.
 const QUIET: f64 = 0.2;
-/// It is looked at if it stands so long, s.
+/// The shortest stand that is examined, s.
 const LONG: f64 = 3.0;
-/// The force is averaged over so long, s.
+/// The time over which the force is averaged, s.
 const WINDOW: f64 = 0.25;
-/// A stand on the ground shows a force whose length changes by less, m/s²: a lift begins with two to four times as much …
+/// The smallest change in the length of the force that may be a lift, m/s²: a stand on the ground shows less, and a
+/// lift begins with two to four times as much.
 const CHANGE: f64 = 0.3;
-/// … and no lift with more, m/s²: what does has no sensor, …
+/// The largest change of the force with which a lift begins, m/s²: more comes from a sensor that does not measure.
 const MOST: f64 = 4.0;
-/// … and it lasts so many windows, if so many of the other sign come in the same stand, …
+/// The fewest windows that a change must last if as many of the other sign come in the same stand.
 const BOTH_WAYS: usize = 2;
-/// … no later than this, s, …
+/// The longest time between the changes of both signs, s.
 const RIDE: f64 = 60.0;
-/// … or else so many.
+/// The fewest windows that a change must last if none of the other sign comes.
 const ONE_WAY: usize = 4;
 
-/// A vehicle that begins to move pushes the foot sideways by at least this, m/s², …
+/// The smallest sideways force on the foot in a vehicle that begins to move, m/s², relative to the median over
+/// `AROUND`.
 const ACROSS: f64 = 0.4;
-/// … beside the median of so long before and after, s.
+/// The time before and after, over which the median is taken, s.
 const AROUND: f64 = 3.0;
-/// After so long without a sample it is not known how the foot turned, s.
+/// The interval between samples after which it is unknown how the foot turned, s.
 const GAP: f64 = 0.06;
 
-/// The index of the first sample at which a standing foot is carried: for a while, the force is longer or shorter than it mostly
-/// is in that stand, or it leans although the gyroscope saw no turn.
+/// The index of the first sample at which a standing foot is carried: for a while, the force is larger or smaller than
+/// it mostly is in that stand, or it leans although the gyroscope saw no turn.
 pub(super) fn carried(samples: &[Sample]) -> Option<usize> {
     let stands = |it: &Sample| norm(&it.angular_rate) < QUIET;
-    // Of all stands: in one of them the foot may turn slowly.
+    // The zero is that of all stands, as in one of them the foot may turn slowly.
     let usual = |axis: usize| {
         let rates = samples.iter().filter(|it| stands(it)).map(|it| it.angular_rate[axis]);
         median(&rates.collect::<Vec<_>>())
@@ -54,11 +56,11 @@ pub(super) fn carried(samples: &[Sample]) -> Option<usize> {
 
 /// The mean force over a window.
 struct Window {
-    /// Where it begins.
+    /// The index of the first sample.
     at: usize,
-    /// As long as it is on average, m/s².
+    /// The mean length of the force, m/s².
     length: f64,
-    /// In the axes that the foot had when the stand began, m/s².
+    /// The mean force in the axes that the foot had when the stand began, m/s².
     force: Vector3<f64>,
 }
 
@@ -71,7 +73,7 @@ fn in_stand(samples: &[Sample], zero: &Vector3<f64>) -> Option<usize> {
     [up_or_down(samples, &windows), across(&windows)].into_iter().flatten().min()
 }
 
-/// With the gyroscope's `zero`, rad/s.
+/// Splits a stand into windows, using the gyroscope's `zero`, rad/s.
 fn windows(samples: &[Sample], zero: &Vector3<f64>) -> Vec<Window> {
     let begin_us = samples[0].time_us;
     let mut turned = UnitQuaternion::identity();
@@ -95,14 +97,14 @@ fn windows(samples: &[Sample], zero: &Vector3<f64>) -> Vec<Window> {
     samples.chunk_by(|a, b| window(a) == window(b)).map(mean).collect()
 }
 
-/// Where the force is longer or shorter than it mostly is.
+/// The first sample where the force is larger or smaller than it mostly is.
 fn up_or_down(samples: &[Sample], windows: &[Window]) -> Option<usize> {
     let usual = median(&windows.iter().map(|it| it.length).collect::<Vec<_>>());
     let sign = |length: f64| {
         let more = length - usual;
         if (CHANGE..MOST).contains(&more.abs()) { more.signum() } else { 0.0 }
     };
-    // Where each change begins, its sign, and how many windows it lasts.
+    // The first sample of each change, its sign, and the number of windows that it lasts.
     let changes: Vec<(usize, f64, usize)> = windows
         .chunk_by(|a, b| sign(a.length) == sign(b.length))
         .map(|run| (run[0].at, sign(run[0].length), run.len()))
@@ -119,7 +121,8 @@ fn up_or_down(samples: &[Sample], windows: &[Window]) -> Option<usize> {
     both.or_else(|| first(1.0, ONE_WAY)).or_else(|| first(-1.0, ONE_WAY))
 }
 
-/// Where the force leans for a while as it does not before and after, by the gyroscope's account of the foot.
+/// The first sample where the force leans for a while as it does not before and after, with the attitude from the
+/// gyroscope.
 fn across(windows: &[Window]) -> Option<usize> {
     let around = (AROUND / WINDOW) as usize;
     let leans = |at: usize| {
@@ -148,7 +151,7 @@ mod tests {
     use super::*;
     use kestirim_health::{Reason, State};
 
-    /// At 100 Hz: ten seconds on the ground, and this force and rate beyond those of standing still from 4 s on for so long.
+    /// Ten seconds on the ground at 100 Hz, with this additional force and rate from 4 s on for `lasts` seconds.
     fn stand(force: f64, rate: f64, lasts: f64) -> Vec<Sample> {
         let sample = |index: u32| {
             let t = f64::from(index) / 100.0;
@@ -175,7 +178,7 @@ mod tests {
         let mut stalled = stand(0.0, 0.0, 0.0);
         stalled[300..500].iter_mut().for_each(|it| it.specific_force = [0.0; 3]);
         assert_eq!(carried(&stalled), None, "a sensor that says nothing");
-        // Half a second, and as long the other way at the end.
+        // Half a second, and as much the other way at the end.
         let mut ride = stand(0.9, 0.0, 0.5);
         assert_eq!(carried(&ride), None);
         for sample in &mut ride[700..750] {
@@ -191,7 +194,7 @@ mod tests {
             sample.specific_force[0] += 0.8;
         }
         assert_eq!(carried(&ride), Some(400));
-        // By half a second's turn about y as much of gravity is along x.
+        // A turn about y of half a second brings as much of gravity along x.
         let mut leaning = stand(0.0, 0.0, 0.0);
         for (index, sample) in leaning.iter_mut().enumerate() {
             let angle = 0.0815 * ((index as f64 - 400.0) / 50.0).clamp(0.0, 1.0);

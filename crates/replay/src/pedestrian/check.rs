@@ -1,4 +1,4 @@
-//! What the log of a walk shows before it is tracked.
+//! Checks of the log of a walk before it is tracked.
 
 mod repeated;
 mod rest;
@@ -11,23 +11,23 @@ use super::Sample;
 use crate::Finding;
 use crate::metrics::median;
 
-/// Samples farther apart than so many usual steps have others missing between them.
+/// The time between samples, in usual steps, above which others are missing between them.
 const GAP: f64 = 3.0;
-/// A value that stands at least so often at an axis's end is its limit, …
+/// The fewest samples at an axis's largest value from which that value is the sensor's limit.
 const CLIPPED: usize = 3;
-/// … if that is far out: beyond 1.8 g, beyond 200 °/s.
+/// The values above which such a limit is credible: 1.8 g in m/s², and 200 °/s in rad/s.
 const FAR_OUT: [f64; 2] = [1.8 * 9.806_65, 3.49];
-/// What sensors are set to: g and °/s.
+/// The measurement ranges of common sensors: g and °/s.
 const RANGES: [&[f64]; 2] =
     [&[2.0, 4.0, 6.0, 8.0, 16.0, 24.0, 32.0], &[250.0, 300.0, 450.0, 500.0, 1000.0, 2000.0]];
-/// The measured turns fit gravity with another factor than one: by so much, …
+/// The factor by which the measured turns must be scaled to fit gravity, from which on it may be a fault.
 const OTHER_FACTOR: f64 = 1.25;
-/// … so many times as well, …
+/// How many times better the scaled turns must fit gravity.
 const BETTER: f64 = 1.5;
-/// … and well.
+/// The largest error, relative to gravity, with which the scaled turns fit well.
 const WELL: f64 = 0.12;
 
-/// What the samples show.
+/// The findings about the samples.
 pub fn check(samples: &[Sample]) -> Vec<Finding> {
     let steps: Vec<f64> = samples
         .windows(2)
@@ -70,13 +70,13 @@ fn gaps(steps: &[f64], usual: f64) -> Option<Finding> {
     let gaps: Vec<f64> = steps.iter().copied().filter(|step| *step > GAP * usual).collect();
     let longest = gaps.iter().copied().fold(0.0, f64::max);
     let found = format!("{} gaps, the longest {longest:.2} s", gaps.len());
-    // Shorter ones are told here alone: they hardly change a path.
+    // Gaps are noted only: short ones hardly change a path.
     (!gaps.is_empty()).then(|| Finding::note("gaps", found))
 }
 
-/// Axes that stand at their end.
+/// Axes that saturate at their limit.
 fn clipped(samples: &[Sample]) -> Vec<Finding> {
-    // A peak that a sensor repeats is no plateau: at its end one axis stays, and others go on.
+    // A peak that a sensor repeats is not saturation: at its limit one axis stays constant, and others continue.
     let mut samples = samples.to_vec();
     samples.dedup_by(|a, b| repeated::same(a, b));
     let axis = |sensor: usize, axis: usize| {
@@ -129,7 +129,7 @@ fn clipped(samples: &[Sample]) -> Vec<Finding> {
     findings
 }
 
-/// Whether the turns are as large as gravity shows them.
+/// Whether the measured turns are as large as gravity shows them.
 fn turned(samples: &[Sample]) -> Option<Finding> {
     let turns = turns(samples)?;
     let apart = turns.factor.max(1.0 / turns.factor);

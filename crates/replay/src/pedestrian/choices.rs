@@ -1,4 +1,4 @@
-//! What can be chosen about a tracker.
+//! The choices of a pedestrian tracker.
 
 use std::fmt::Debug;
 
@@ -11,23 +11,23 @@ use kestirim_scalar::Scalar;
 use super::STANDARD_GRAVITY;
 use crate::{Number, ScalarKind, Stored};
 
-/// Everything that can be chosen about a tracker.
+/// All options of a tracker.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
     /// Architecture of the tracker.
     pub tracker: TrackerKind,
-    /// How stance is recognised.
+    /// The detector of stance.
     pub detector: DetectorKind,
     /// Class of the sensor: prior of its bias and noise.
     pub sensor: SensorClass,
-    /// Height of the sensor above the ball of the foot, m; none is the tracker's default, and 0 with the
-    /// detector of the paper, which forces all velocity to zero.
+    /// Height of the sensor above the ball of the foot, m; `None` is the tracker's default, or 0 with the detector of
+    /// the paper, which forces all velocity to zero.
     pub contact_height_m: Option<f64>,
-    /// Look only backwards, as firmware must.
+    /// Use past samples only, as firmware must.
     pub causal: bool,
-    /// Correct the heading by a magnetometer, if there is one.
+    /// Correct the heading with the magnetometer, if there is one.
     pub magnetometer: bool,
-    /// Take back over each swing what its end corrected.
+    /// Distribute the correction at the end of each swing over that swing.
     pub smooth: bool,
     /// Number type of the estimator.
     pub scalar: ScalarKind,
@@ -43,7 +43,8 @@ impl Options {
         }
     }
 
-    /// The published method beside this one: with its threshold, if it has one, its sensor and its numbers.
+    /// The published method to compare with these options: with the same threshold, if they have one, sensor and number
+    /// type.
     pub fn published_beside(&self) -> Self {
         let detector = match self.detector {
             DetectorKind::Magnitude(_) => self.detector,
@@ -52,7 +53,7 @@ impl Options {
         Self { detector, sensor: self.sensor, scalar: self.scalar, ..Self::published() }
     }
 
-    /// The threshold of the detector magnitude, g; the paper's with another detector.
+    /// The threshold of the magnitude detector, g; the paper's with another detector.
     pub fn magnitude_threshold_g(&self) -> f64 {
         match self.detector {
             DetectorKind::Magnitude(threshold) => threshold / STANDARD_GRAVITY,
@@ -60,7 +61,7 @@ impl Options {
         }
     }
 
-    /// The height that the tracker takes the sensor for, m; none is its own.
+    /// The height that the tracker assumes for the sensor, m; `None` is the tracker's default.
     pub fn contact_height_m(&self) -> Option<f64> {
         match (self.contact_height_m, self.detector) {
             (None, DetectorKind::Magnitude(_)) => Some(0.0),
@@ -68,7 +69,7 @@ impl Options {
         }
     }
 
-    /// What a tracker is built from.
+    /// The settings from which a tracker is built.
     pub fn config<T: Scalar>(&self) -> Config<T> {
         let levels = self.detector == DetectorKind::Adaptive;
         let config = Config { sensor: self.sensor.into(), levels, ..Config::default() };
@@ -78,7 +79,7 @@ impl Options {
         }
     }
 
-    /// With the class that is found, unless it is said.
+    /// The options with the sensor class that was found, unless one was chosen.
     #[must_use]
     pub fn with_sensor(&self, found: impl FnOnce() -> kestirim_pedestrian::SensorClass) -> Self {
         let sensor = match self.sensor {
@@ -104,7 +105,7 @@ impl Default for Options {
     }
 }
 
-/// Architecture of a tracker.
+/// The architecture of a tracker.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum TrackerKind {
@@ -115,7 +116,7 @@ pub enum TrackerKind {
     Lite,
 }
 
-/// Class of an IMU: how large its bias and noise are before anything is known.
+/// The class of an IMU: the size of its bias and noise before anything is known.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum SensorClass {
@@ -146,7 +147,7 @@ impl From<kestirim_pedestrian::SensorClass> for SensorClass {
     }
 }
 
-/// How stance is recognised; thresholds in SI, stance is below.
+/// The detector of stance. Thresholds are in SI units; stance is below them.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum DetectorKind {
     /// Threshold-free: compares with the quietest moments around.
@@ -165,15 +166,15 @@ pub enum DetectorKind {
 impl DetectorKind {
     /// The paper's threshold of 0.1 g, m/s².
     pub const MAGNITUDE_THRESHOLD: f64 = Magnitude::<f64>::THRESHOLD_G * STANDARD_GRAVITY;
-    /// Default of [`Self::Variance`], (m/s²)².
+    /// The default threshold of [`Self::Variance`], (m/s²)².
     pub const VARIANCE_THRESHOLD: f64 =
         MovingVariance::<f64>::THRESHOLD_G2 * STANDARD_GRAVITY * STANDARD_GRAVITY;
-    /// Default of [`Self::AngularRate`], (rad/s)².
+    /// The default threshold of [`Self::AngularRate`], (rad/s)².
     pub const ANGULAR_RATE_THRESHOLD: f64 = AngularRateEnergy::<f64>::THRESHOLD;
-    /// Default of [`Self::Shoe`], (rad/s)².
+    /// The default threshold of [`Self::Shoe`], (rad/s)².
     pub const SHOE_THRESHOLD: f64 = FixedShoe::<f64>::THRESHOLD;
 
-    /// When the foot is taken to stand.
+    /// The condition for stance, in words.
     pub fn in_words(self) -> String {
         match self {
             Self::Adaptive => "near the quietest moments around".to_owned(),
@@ -187,16 +188,16 @@ impl DetectorKind {
     }
 }
 
-/// What is done with a detector, whichever it is.
+/// Work that is generic over the detector.
 pub(super) trait WithDetector<T: Scalar> {
-    /// What comes of it.
+    /// The result of the work.
     type Output;
 
-    /// Does it.
+    /// Does the work with a detector.
     fn with<D: StanceDetector<T> + Stored + Debug + 'static>(self, detector: D) -> Self::Output;
 }
 
-/// Does something with the detector that is chosen.
+/// Does work with the chosen detector.
 pub(super) fn with_detector<T: Number, W: WithDetector<T>>(
     options: &Options,
     work: W,

@@ -1,4 +1,4 @@
-//! A walk that ended where it began.
+//! Closing of walks that ended where they began.
 
 use kestirim_pedestrian::PathUncertainty;
 use nalgebra::{Matrix2, Vector2};
@@ -6,22 +6,23 @@ use nalgebra::{Matrix2, Vector2};
 use super::path::{Path, PathErrors};
 use super::{Stride, Walk};
 
-/// Standard deviation of how near the start a walk ends that ends where it began, m.
+/// Standard deviation of the distance between start and end of a walk that ended where it began, m.
 const PUT_BACK: f64 = 0.1;
-/// χ² of three degrees of freedom that a closed walk exceeds once in a thousand.
+/// The χ² of three degrees of freedom that a closed walk exceeds once in a thousand cases.
 const UNLIKELY: f64 = 16.3;
-/// Rates that are tried first, to either side, and how many standard deviations the last of them is away.
+/// The number of heading rates that are tried first, to either side, and the largest of them in standard deviations.
 const TRIED: (i32, f64) = (40, 4.0);
 
 impl Walk {
     /// Closes the path: it ends where it began, in the plane and in height.
     ///
-    /// What makes a path wrong is known by its kinds ([`PathUncertainty`]): a constant rate of the heading, a scale, an error
-    /// of each stride. The most likely of them that close it are taken back; standard deviations are those that remain.
+    /// The kinds of errors of a path are known ([`PathUncertainty`]): a constant rate of the heading, a scale, an error
+    /// of each stride. The most likely errors that close the path are removed; standard deviations are those that
+    /// remain.
     ///
     /// # Errors
-    /// A sentence if there is no stride, or if these errors do not explain how far the end is from the start: the walk
-    /// stays as it was.
+    /// A sentence if there is no stride, or if these errors do not explain the distance between end and start: the walk
+    /// then stays as it was.
     pub fn close(&mut self) -> Result<(), String> {
         let Some(last) = self.strides.last() else {
             return Err("the path is not closed: there is no stride".to_owned());
@@ -39,13 +40,13 @@ impl Walk {
         }
         self.turn_back(rate);
         self.shorten(scale);
-        // What is left at the end, from each stride the same.
+        // The remaining gap is distributed equally over the strides.
         let end = self.strides.last().map_or(start, |stride| stride.position);
         let taken = prior.shares_of_a_stride();
         let taken = [0, 1, 2].map(|axis| -taken[axis] * (end[axis] - start[axis]));
         let strides = 1..=self.strides.len();
         self.displace(&strides.map(|count| taken.map(|of| count as f64 * of)).collect::<Vec<_>>());
-        // A lost heading is no constant rate, so that only the end is known better.
+        // A lost heading is not a constant rate, so that then only the end is known better.
         let (left, last) = (path.remaining(&prior, rate, scale), self.strides.len() - 1);
         let is_unseen = self.strides.iter().any(Stride::is_unseen);
         for (at, (stride, sigma_m)) in self.strides.iter_mut().zip(left).enumerate() {
@@ -58,17 +59,17 @@ impl Walk {
     }
 }
 
-/// How large the errors of a path are, before it is known that it is closed.
+/// Variances of the errors of a path, before it is known that it is closed.
 struct Prior {
     /// Standard deviation of the heading's rate, rad/s.
     rate: f64,
-    /// Of the scale.
+    /// Standard deviation of the scale.
     scale: f64,
-    /// Variance of all strides' own errors, each axis, m².
+    /// Variance of the sum of all strides' own errors, for each axis, m².
     strides: f64,
-    /// Of all height errors, m².
+    /// Variance of the sum of all height errors, m².
     heights: f64,
-    /// Of a stride's height, m²: of its own error, and of what all have alike.
+    /// Variance of a stride's height, m²: of its own error, and (`rise`) of the error common to all strides.
     height: f64,
     rise: f64,
     count: f64,
@@ -91,7 +92,7 @@ impl Prior {
         }
     }
 
-    /// What a stride takes of what is left at the end, in the plane and in height.
+    /// The share of the remaining gap that each stride takes, in the plane and in height.
     fn shares_of_a_stride(&self) -> [f64; 3] {
         let of = |variance: f64| variance / (variance + PUT_BACK * PUT_BACK) / self.count.max(1.0);
         [self.strides, self.strides, self.heights].map(of)
@@ -99,7 +100,7 @@ impl Prior {
 }
 
 impl Path {
-    /// χ² of these errors.
+    /// The χ² of these errors.
     fn unlikeliness(&self, prior: &Prior, [rate, scale]: [f64; 2]) -> f64 {
         let of_the_end =
             self.end(rate, scale).norm_squared() / (prior.strides + PUT_BACK * PUT_BACK);
@@ -127,7 +128,7 @@ impl Path {
         (found.x, found.y, self.unlikeliness(prior, [found.x, found.y]))
     }
 
-    /// Standard deviations after each stride, m, when it is known that the path is closed.
+    /// Standard deviations after each stride, m, given that the path is closed.
     fn remaining(&self, prior: &Prior, rate: f64, scale: f64) -> Vec<[f64; 3]> {
         let variances =
             Matrix2::from_diagonal(&Vector2::new(prior.rate.powi(2), prior.scale.powi(2)));

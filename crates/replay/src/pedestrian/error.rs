@@ -1,21 +1,21 @@
-/// Why a tracker makes no walk of a log.
+/// Why a tracker cannot compute a walk from a log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// Too short to integrate anything.
+    /// The log is too short to integrate anything.
     #[error("expected a log of at least {needed} samples, found {found}")]
     TooShort {
-        /// Samples of the log.
+        /// The number of samples in the log.
         found: usize,
-        /// Samples it takes.
+        /// The number of samples that are needed.
         needed: usize,
     },
-    /// The tracker refuses a sample.
+    /// The tracker rejects a sample.
     #[error("sample {index}: {source}")]
     Sample {
-        /// Counted from 1.
+        /// The number of the sample, counted from 1.
         index: usize,
-        /// Why.
+        /// The reason.
         source: kestirim_pedestrian::Error,
     },
 }

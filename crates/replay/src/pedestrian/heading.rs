@@ -1,4 +1,4 @@
-//! The heading of a recorded walk, corrected by a magnetometer where the foot stands twice at the same place.
+//! Correction of the heading of a recorded walk by a magnetometer, where the foot stands twice at the same place.
 
 use kestirim_pedestrian::{Ekf, MagneticHeading, OfflineTracker, PathUncertainty};
 use nalgebra::SVector;
@@ -6,11 +6,11 @@ use nalgebra::SVector;
 use super::walk::imu_sample;
 use super::{Options, Sample, Walk, position_at};
 
-/// Standard deviation of where a foot stands that is put back to where it stood, m.
+/// Standard deviation of the position of a foot that returns to an earlier place, m.
 const PUT_BACK: f64 = 0.1;
 
-/// The rate at which the heading of a walk drifts, rad/s, where the magnetometer shows it; a sentence if the field turns as no
-/// gyroscope of this class does.
+/// The rate at which the heading of a walk drifts, rad/s, if the magnetometer shows it; an error if the field turns as
+/// no gyroscope of this class does.
 fn heading_rate(
     samples: &[Sample],
     field: &[[f64; 3]],
@@ -49,9 +49,9 @@ fn shown(samples: &[Sample], field: &[[f64; 3]], options: &Options) -> Option<f6
 }
 
 impl Walk {
-    /// Takes the drift of the heading back where the log's magnetometer shows it, or warns why not.
+    /// Removes the drift of the heading if the log's magnetometer shows it, or warns why not.
     ///
-    /// The `field` is measured at each sample, body axes, in any unit, and not a number where it was not.
+    /// The `field` is measured at each sample, in body axes and any unit, and `NaN` where it was not measured.
     pub fn correct_heading(&mut self, samples: &[Sample], field: &[[f64; 3]], options: &Options) {
         match heading_rate(samples, field, options) {
             Ok(Some(rate)) => self.turn_back(rate),
@@ -60,7 +60,7 @@ impl Walk {
         }
     }
 
-    /// Turns each step back by how far the heading has drifted until then, at this rate, rad/s.
+    /// Turns each step back by the accumulated drift of the heading at this rate, rad/s.
     pub fn turn_back(&mut self, rate: f64) {
         let Some(first) = self.track.first().copied() else { return };
         let (mut before, mut now) = (first.position, first.position);
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn a_drift_is_turned_back() {
-        // A circle walked at a constant rate, with a heading that drifts by so much.
+        // A circle walked at a constant rate, with a drifting heading.
         let drift = 0.001;
         let mut at = [0.0, 0.0];
         let track = (0..=100).map(|k| {

@@ -1,9 +1,9 @@
-//! A walk with a sensor on the foot.
+//! Walks with a sensor on the foot.
 //!
-//! [`walk`] makes a [`Walk`] of [`Sample`]s as the [`Options`] say, [`trace`] keeps velocity, attitude and stance of every
-//! sample, too. [`Walk::correct_heading`] takes the drift of the heading back where the log has a magnetometer, [`sensor_class`] what kind
-//! of sensor it was. [`build`] makes what follows a walk while it comes. Frame: *room*, z up, x as the foot pointed at
-//! the start.
+//! [`walk`] computes a [`Walk`] from [`Sample`]s according to the [`Options`]; [`trace`] also keeps velocity, attitude
+//! and stance at every sample. [`Walk::correct_heading`] removes the drift of the heading if the log has a
+//! magnetometer; [`sensor_class`] tells the class of the sensor. [`build`] makes a tracker for a walk in progress.
+//! Frame: *room*, z up, x as the foot pointed at the start.
 
 mod carried;
 mod check;

@@ -1,29 +1,29 @@
-//! A walked path step by step: what its errors make of it, and how they are taken back.
+//! A walked path step by step: the effect of its errors, and their correction.
 
 use kestirim_pedestrian::PathUncertainty;
 use nalgebra::{Matrix2, Rotation2, Vector2};
 
 use super::{Stride, Walk};
 
-/// Steps from stance to stance, and when each was made after the start, s.
+/// The steps from stance to stance, with the time of each after the start, s.
 pub(super) struct Path {
     start_us: u64,
     pub(super) steps: Vec<(f64, Vector2<f64>)>,
 }
 
-/// Standard deviations of what still makes a path wrong in the plane ([`PathUncertainty`]).
+/// Standard deviations of the errors that remain in a path in the plane ([`PathUncertainty`]).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PathErrors {
-    /// Of the heading's rate, rad/s.
+    /// Standard deviation of the heading's rate, rad/s.
     pub(super) rate: f64,
-    /// Of the scale.
+    /// Standard deviation of the scale.
     pub(super) scale: f64,
-    /// Of each stride by itself, each axis, m.
+    /// Standard deviation of each stride's own error, for each axis, m.
     pub(super) stride: f64,
 }
 
 impl PathErrors {
-    /// As the class of the sensor has them, or as the other foot and right angles left them.
+    /// The errors for the class of the sensor, or those that the other foot and right angles left.
     pub(super) fn of(walk: &Walk) -> Self {
         let class = kestirim_pedestrian::SensorClass::from(walk.sensor);
         let off = walk.strides.last().map_or(0.0, |stride| stride.gravity_off);
@@ -43,7 +43,8 @@ impl PathErrors {
 }
 
 impl Path {
-    /// The time of a step is the mean over its way: a pause before or after it turns no step.
+    /// The steps of a walk. The time of a step is the mean over its displacement: a pause before or after it turns no
+    /// step.
     pub(super) fn of(walk: &Walk) -> Self {
         let mut pairs = walk.track.windows(2).peekable();
         let start_us = walk.track.first().map_or(0, |point| point.time_us);
@@ -62,12 +63,13 @@ impl Path {
         path
     }
 
-    /// Time after the start, s.
+    /// The time after the start, s.
     pub(super) fn seconds(&self, time_us: u64) -> f64 {
         time_us.saturating_sub(self.start_us) as f64 * 1e-6
     }
 
-    /// The path so far after each stride, turned back at a rate and less long by a scale, and how it changes with both.
+    /// The path after each stride, turned back at a rate and shortened by a scale, and its derivatives with respect to
+    /// both.
     pub(super) fn walked(
         &self,
         rate: f64,
@@ -89,12 +91,12 @@ impl Path {
 }
 
 impl Walk {
-    /// Where the path begins, m.
+    /// The start of the path, m.
     pub(super) fn start(&self) -> [f64; 3] {
         self.track.first().map_or([0.0; 3], |point| point.position)
     }
 
-    /// Makes the path shorter by a scale, in the plane.
+    /// Shortens the path by a scale, in the plane.
     pub(super) fn shorten(&mut self, scale: f64) {
         let start = self.start();
         let shorter = |[x, y, z]: [f64; 3]| {
@@ -112,7 +114,7 @@ impl Walk {
         self.path_length_m *= 1.0 - scale;
     }
 
-    /// Moves each footprint by so much, m, and the track between two of them while the foot moves.
+    /// Moves each footprint by the given displacement, m, and the track between two of them where the foot moves.
     pub(super) fn displace(&mut self, by: &[[f64; 3]]) {
         let start = self.start();
         let (mut done, mut from) = (0, start);

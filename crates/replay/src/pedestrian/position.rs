@@ -1,6 +1,6 @@
 //! Positions over time.
 
-/// Where something is at a time.
+/// A position at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrackPoint {
     /// Time of the log's clock, µs.
@@ -16,7 +16,7 @@ impl TrackPoint {
     }
 }
 
-/// Where the foot stood.
+/// A place where the foot stood.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Footprint {
     /// Time of the log's clock, µs.
@@ -25,8 +25,8 @@ pub struct Footprint {
     pub position: [f64; 2],
 }
 
-/// The position at a time, interpolated linearly between neighbours and held beyond the ends;
-/// none of an empty track. Times must not decrease.
+/// The position at a time, interpolated linearly between neighbours and held beyond the ends; `None` for an empty
+/// track. Times must not decrease.
 pub fn position_at(track: &[TrackPoint], time_us: u64) -> Option<[f64; 3]> {
     let after = track.partition_point(|point| point.time_us <= time_us);
     let next = track.get(after).or(track.last())?;

@@ -1,4 +1,4 @@
-//! The heading of a walk among walls that stand at right angles.
+//! Correction of the heading of a walk among walls at right angles.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -10,43 +10,46 @@ use super::path::{Path, PathErrors};
 
 /// Standard deviation of a leg's direction from that of the walls, rad: 1.5°.
 const ALONG: f64 = 0.026;
-/// A stride belongs to a leg if it leads where the leg has led so far, within this, rad.
+/// The largest angle between a stride and the leg so far for the stride to belong to that leg, rad.
 const BEND: f64 = 0.26;
-/// Strides of a leg, at least.
+/// The fewest strides of a leg.
 const STRIDES: usize = 3;
-/// The share of legs that are taken to go anywhere.
+/// The share of legs that are assumed to go in any direction.
 const ASTRAY: f64 = 0.2;
-/// Legs along the walls, at least.
+/// The fewest legs along the walls.
 const LEGS: usize = 4;
-/// The share of the path that they are, at least.
+/// The smallest share of the path along the walls.
 const SHARE: f64 = 0.6;
-/// How much likelier the directions are with walls than without, at least, whatever rate and walls those are.
+/// The smallest likelihood ratio of the directions with walls to those without, over all rates and walls.
 const LIKELIER: f64 = 100.0;
-/// How many standard deviations the last of the rates is away that are tried to either side, and how many those are at most.
+/// The largest heading rate that is tried to either side, in standard deviations; `RATES` is the largest number of
+/// rates on a side.
 const FURTHEST: f64 = 4.0;
 const RATES: f64 = 1000.0;
-/// Directions of walls that are tried.
+/// The number of directions of walls that are tried.
 const DIRECTIONS: i32 = 45;
 
-/// How well a walk went along walls at right angles.
+/// How well a walk follows walls at right angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RightAngles {
-    /// The share of its path along them, 0 to 1.
+    /// The share of the path along the walls, 0 to 1.
     pub share: f64,
-    /// Standard deviation of the heading's rate, rad/s, that is left.
+    /// The remaining standard deviation of the heading's rate, rad/s.
     pub rate_sigma: f64,
 }
 
 impl Walk {
-    /// Takes back a drift of the heading at a constant rate, which shows in a building: people go straight along its walls, which
-    /// stand at right angles, so that the directions of straight legs differ by multiples of 90° (Borenstein and Ojeda, Heuristic
-    /// drift elimination for personnel tracking systems, J. Navigation 63, 2010, here over the whole walk and with its likelihood).
+    /// Removes a drift of the heading at a constant rate, which shows in a building: people go straight along its
+    /// walls, which stand at right angles, so that the directions of straight legs differ by multiples of 90°
+    /// (Borenstein and Ojeda, Heuristic drift elimination for personnel tracking systems, J. Navigation 63, 2010, here
+    /// over the whole walk and with its likelihood).
     ///
-    /// The rate is the likeliest, given how gyroscopes of the class drift: legs that say little change little. Standard
-    /// deviations of the path stay as they were, until it is [closed](Self::close), which knows what is left.
+    /// The rate is the most likely one, given how gyroscopes of the class drift: legs with little evidence change
+    /// little. Standard deviations of the path remain unchanged until it is [closed](Self::close), which takes the
+    /// remaining rate error into account.
     ///
     /// # Errors
-    /// A sentence if the walk does not go along right angles, or cannot tell: it stays as it was.
+    /// A sentence if the walk does not follow right angles, or does not tell: it then remains unchanged.
     pub fn align_to_right_angles(&mut self) -> Result<RightAngles, String> {
         let path = Path::of(self);
         if path.steps.is_empty() {
@@ -56,7 +59,7 @@ impl Walk {
         let legs = legs(&path);
         let (walls, evidence) = Walls::likeliest(&legs, PathErrors::of(self).rate);
         let along: Vec<_> = legs.iter().filter(|leg| walls.has(leg)).collect();
-        // Not `sum`, which is -0 of nothing, and is told.
+        // Not `sum`, which is -0 for no terms, and is shown.
         let along_m = along.iter().fold(0.0, |sum, leg| sum + leg.length_m);
         if along.len() < LEGS || along_m < SHARE * path_m {
             let (count, percent) = (along.len(), 100.0 * SHARE);
@@ -78,11 +81,11 @@ impl Walk {
     }
 }
 
-/// Strides in one direction.
+/// A leg: consecutive strides in one direction.
 struct Leg {
-    /// Where it leads, rad.
+    /// The direction, rad.
     direction: f64,
-    /// When half of its path is behind, s since the start.
+    /// The mean time over its path, s since the start.
     time_s: f64,
     length_m: f64,
     /// Standard deviation of the direction from the walls', rad.
@@ -118,10 +121,10 @@ fn legs(path: &Path) -> Vec<Leg> {
     legs
 }
 
-/// What the legs of a walk say of walls and heading.
+/// An estimate of walls and heading drift from the legs of a walk.
 #[derive(Clone, Copy)]
 struct Walls {
-    /// The direction of one of them at the start, rad.
+    /// The direction of one of the walls at the start, rad.
     direction: f64,
     /// The rate of the heading's drift and its standard deviation, rad/s.
     rate: f64,
@@ -129,14 +132,14 @@ struct Walls {
 }
 
 impl Walls {
-    /// The likeliest, where rates have this standard deviation before, and the logarithm of how much likelier the legs are with
-    /// any walls and rate, as likely as they are before, than without walls.
+    /// The most likely walls and rate, for rates with this prior standard deviation, and the logarithm of how much
+    /// likelier the legs are with walls, averaged over all directions and rates by their prior, than without walls.
     fn likeliest(legs: &[Leg], prior: f64) -> (Self, f64) {
         let furthest = FURTHEST * prior;
         let longest_s = legs.iter().map(|leg| leg.time_s).fold(0.0, f64::max);
-        // From one rate to the next the last leg turns by two standard deviations.
+        // Between neighbouring rates, the last leg turns by two standard deviations.
         let rates = (furthest * longest_s / (2.0 * ALONG)).ceil().clamp(10.0, RATES);
-        // The logarithm of how likely a rate is before.
+        // The logarithm of the prior of a rate.
         let known = |rate: f64| -0.5 * (rate / prior).powi(2);
         let (mut walls, mut best) =
             (Self { direction: 0.0, rate: 0.0, rate_sigma: prior }, f64::NEG_INFINITY);
@@ -167,7 +170,7 @@ impl Walls {
         (walls, best + (of_all / of_rates).ln())
     }
 
-    /// A step of Gauss and Newton towards the likeliest, each leg weighted by how likely it goes along the walls.
+    /// A Gauss–Newton step towards the most likely walls, each leg weighted by the probability that it goes along them.
     fn improve(&mut self, legs: &[Leg], prior: f64) {
         let mut information = Matrix2::new(prior.powi(-2), 0.0, 0.0, 0.0);
         let mut gradient = Vector2::new(-self.rate / prior.powi(2), 0.0);
@@ -185,7 +188,7 @@ impl Walls {
         self.rate_sigma = inverse[(0, 0)].max(0.0).sqrt();
     }
 
-    /// How far a leg is from along them, rad.
+    /// The angle between a leg and the nearest wall, rad.
     fn off(&self, leg: &Leg) -> f64 {
         let angle = leg.direction - self.rate * leg.time_s - self.direction;
         (angle + FRAC_PI_2 / 2.0).rem_euclid(FRAC_PI_2) - FRAC_PI_2 / 2.0
@@ -195,14 +198,15 @@ impl Walls {
         self.off(leg).abs() < 3.0 * leg.sigma
     }
 
-    /// Probability densities that a leg goes along them as it does, and that it goes anywhere, 1/rad.
+    /// The probability densities of a leg's direction if it goes along the walls, and if it goes anywhere, 1/rad, each
+    /// times its share.
     fn densities(&self, leg: &Leg) -> [f64; 2] {
         let off = self.off(leg) / leg.sigma;
         let along = (-0.5 * off * off).exp() / (leg.sigma * TAU.sqrt());
         [(1.0 - ASTRAY) * along, ASTRAY * 2.0 / PI]
     }
 
-    /// How much likelier the legs are with them than without: the logarithm of the ratio.
+    /// The logarithm of the likelihood ratio of the legs with these walls to those without walls.
     fn evidence(&self, legs: &[Leg]) -> f64 {
         let anywhere = 2.0 / PI;
         legs.iter().map(|leg| (self.densities(leg).iter().sum::<f64>() / anywhere).ln()).sum()

@@ -1,46 +1,47 @@
-//! What a log shows of its sensor's class: the zero of its gyroscope at rest, and the step of its numbers.
+//! The class of a sensor from its log: by the gyroscope's zero at rest, and the step of its numbers.
 
 use kestirim_pedestrian::SensorClass;
 
 use super::Sample;
 
-/// A calibrated unit's gyroscope is off by less, rad/s. At rest those of the walks in the book were off by 1 to
-/// 9 mrad/s, bare chips by 15 to 21.
+/// The largest zero of a calibrated unit's gyroscope, rad/s. At rest those of the walks in the book were off by 1 to 9
+/// mrad/s, bare chips by 15 to 21.
 const CALIBRATED: f64 = 0.012;
-/// So many standard deviations of the zero are left the benefit of the doubt: people sway.
+/// The number of standard deviations by which the zero must exceed that: people sway.
 const DOUBT: f64 = 3.0;
-/// Standard deviation of a standstill's mean beside its own spread, rad/s.
+/// Standard deviation of a standstill's mean in addition to its own spread, rad/s.
 const FLOOR: f64 = 0.0007;
-/// A standstill is so many eighths of a second, …
+/// The length of a standstill, in eighths of a second.
 const EIGHTHS: usize = 4;
-/// … whose means differ by less than this, rad/s, …
+/// The largest difference between the mean rates of the eighths of a standstill, rad/s.
 const RATE_SPREAD: f64 = 0.03;
-/// … and this, m/s².
+/// The largest difference between the mean forces of the eighths of a standstill, m/s².
 const FORCE_SPREAD: f64 = 0.4;
-/// Eighths that spread by more, rad/s, …
+/// The spread of the eighths of a standstill above which it may be a sway, rad/s, if it also exceeds `SWAY`.
 const CALM: f64 = 0.005;
-/// … and by more than this share of their mean, may be a sway.
+/// The spread of the eighths of a standstill above which it may be a sway, as a share of their mean.
 const SWAY: f64 = 0.2;
-/// No zero is off by more, rad/s.
+/// The largest zero of any gyroscope, rad/s.
 const LARGEST: f64 = 0.35;
 /// An eighth of a second, µs.
 const EIGHTH_US: u64 = 125_000;
 
-/// Full scales of chips, °/s, whose steps are a 32768th; and steps of chips that are said otherwise, °/s.
+/// The full scales of chips, °/s, whose steps are a 32768th of them; and the steps of chips that are specified
+/// directly, °/s.
 const FULL_SCALES: [f64; 5] = [125.0, 250.0, 500.0, 1000.0, 2000.0];
 const STEPS: [f64; 9] =
     [1.0 / 131.0, 1.0 / 65.5, 1.0 / 32.8, 1.0 / 16.4, 0.004_375, 0.008_75, 0.0175, 0.035, 0.07];
-/// Rates up to so many steps are asked for, so that a step known to a thousandth counts them rightly.
+/// The largest rate that is tested, in steps, so that a step known to a thousandth counts them correctly.
 const COUNTED: f64 = 120.0;
-/// How far from a whole number of steps a number may be written.
+/// The largest deviation of a number from a whole number of steps, as it is written.
 const WRITTEN: f64 = 0.05;
-/// So many numbers of a hundred have to be whole, …
+/// The percentage of numbers that must be whole.
 const WHOLE: usize = 98;
-/// … of at least so many.
+/// The fewest numbers that are tested.
 const NUMBERS: usize = 300;
 
-/// The class of the sensor from what it `measured` and what that is once it is `corrected`: bare if its numbers are a
-/// chip's own steps, if its zero is surely off, or if it never stood still.
+/// The class of the sensor, from what it `measured` and the samples `corrected` by a calibration: bare if its numbers
+/// are a chip's own steps, if its zero is surely off, or if it never stood still.
 pub fn sensor_class(corrected: &[Sample], measured: &[Sample]) -> SensorClass {
     let standstills = standstills(corrected);
     let is_off = zero(&standstills)
@@ -52,7 +53,7 @@ pub fn sensor_class(corrected: &[Sample], measured: &[Sample]) -> SensorClass {
     }
 }
 
-/// The mean rate of half a second at rest, and how its eighths spread, rad/s.
+/// The mean rate over half a second at rest, and the spread of its eighths, rad/s.
 type Standstill = ([f64; 3], f64);
 
 fn standstills(samples: &[Sample]) -> Vec<Standstill> {
@@ -90,8 +91,8 @@ fn summed_up(run: &[[[f64; 3]; 2]]) -> Standstill {
     (mean, (run.iter().map(square).sum::<f64>() / count).sqrt())
 }
 
-/// The gyroscope's zero, rad/s, from all standstills but those that may as well be a person's sway, and its standard
-/// deviation; none without them.
+/// The gyroscope's zero, rad/s, from all standstills that cannot be a person's sway, and its standard deviation; `None`
+/// without such standstills.
 fn zero(standstills: &[Standstill]) -> Option<([f64; 3], f64)> {
     let is_calm = |(rate, spread): &&Standstill| *spread < CALM.max(SWAY * norm(*rate));
     let calm: Vec<_> = standstills.iter().filter(is_calm).collect();
@@ -120,7 +121,7 @@ fn is_raw(samples: &[Sample]) -> bool {
     })
 }
 
-/// The largest difference of a component.
+/// The largest difference of any component.
 fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max)
 }
@@ -133,7 +134,7 @@ fn norm(vector: [f64; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Three seconds at rest with this zero, and a sway that grows to so much, rad/s, written in steps.
+    /// Three seconds at rest with this zero and a sway of the given amplitude, rad/s, written in steps.
     fn still(zero: f64, sway: f64, step: f64) -> Vec<Sample> {
         let rate = |k: u64, axis: u64| {
             let noise = 0.002 * ((k * 379 + axis * 137) % 101) as f64 / 50.0 - 0.002;

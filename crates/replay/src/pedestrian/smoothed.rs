@@ -1,15 +1,16 @@
-//! A walk as it is known afterwards: what a stance found wrong is taken back over the swing before it.
+//! Smoothing of a walk: the correction at each stance is distributed over the swing before it.
 
 use super::{Moment, Walk};
 
-/// Nothing is known of so long a time between samples, s, as in `kestirim_pedestrian`.
+/// The interval between samples beyond which nothing is known of the motion, s, as in `kestirim_pedestrian`.
 const GAP: f64 = 0.06;
 
-/// Takes back from each swing what its end corrected.
+/// Distributes the correction at the end of each swing over that swing.
 ///
-/// A velocity that is wrong by e when the foot stands again drifted there, whether by tilt or by noise: in proportion to
-/// time, and the position with its square. The filter itself has the position at the end corrected by that; here the way
-/// there is, so that no foot jumps as it lands. Where it stands stays as it was found, and so does a swing with a gap.
+/// A velocity that is wrong by e when the foot stands again has drifted there, whether by tilt or by noise, in
+/// proportion to time, and the position with its square. The filter corrects only the position at the end; here the way
+/// there is corrected, so that no foot jumps as it lands. Positions in stance remain as they are, and so does a swing
+/// with a gap.
 pub(super) fn smooth(walk: &mut Walk, moments: &mut [Moment]) {
     let mut stood = None;
     for landing in 0..walk.track.len().min(moments.len()) {
@@ -22,7 +23,7 @@ pub(super) fn smooth(walk: &mut Walk, moments: &mut [Moment]) {
     }
 }
 
-/// A swing from the last sample of a stance to the first of the next.
+/// Smooths a swing from the last sample of a stance to the first of the next.
 fn take_back(walk: &mut Walk, moments: &mut [Moment], stood: usize, landing: usize) {
     let seconds = |from: usize, to: usize| {
         walk.track[to].time_us.saturating_sub(walk.track[from].time_us) as f64 * 1e-6
@@ -68,7 +69,7 @@ mod tests {
                 stance: !swings,
             });
         }
-        // Where it lands, it is as long as the swing and one sample of it more.
+        // The position at landing: the length of the swing and of one more sample.
         walk.track[101].position[0] = 1.01;
         smooth(&mut walk, &mut moments);
         for k in 0..=101 {

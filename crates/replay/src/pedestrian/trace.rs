@@ -1,15 +1,14 @@
-//! More than the path: how fast the foot was and whether it stood, at every sample, and what comes out
-//! without zero-velocity updates.
+//! Traces of walks: velocity and stance at every sample, and the result without zero-velocity updates.
 
 use kestirim_pedestrian::detector::{Adaptive, Motion, StanceDetector, Verdict};
 use kestirim_scalar::Scalar;
 
 use super::{Error, Options, Sample, Walk};
 
-/// What a tracker says of one sample beside the position.
+/// The estimate for one sample, beside the position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moment {
-    /// In the room frame, m/s.
+    /// The velocity in the room frame, m/s.
     pub velocity: [f64; 3],
     /// The quaternion from body to room: w, x, y, z.
     pub orientation: [f64; 4],
@@ -17,10 +16,10 @@ pub struct Moment {
     pub stance: bool,
 }
 
-/// What is called with every [`Moment`] of a walk, in order.
+/// A callback for every [`Moment`] of a walk, in order.
 pub(super) type See<'a> = dyn FnMut(Moment) + 'a;
 
-/// When zero velocities are used.
+/// The times at which zero-velocity updates are used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Updates {
     /// Whenever the chosen detector finds that the foot stands.
@@ -32,24 +31,24 @@ pub(super) enum Updates {
 /// A walk and its moments.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trace {
-    /// As [`walk`](super::walk) gives it.
+    /// The walk, as [`walk`](super::walk) returns it.
     pub walk: Walk,
-    /// One for every position of its track.
+    /// The moments, one for every position of the track.
     pub moments: Vec<Moment>,
 }
 
 /// Tracks a walk and keeps every moment of it.
 ///
 /// # Errors
-/// As [`walk`](super::walk).
+/// Those of [`walk`](super::walk).
 pub fn trace(samples: &[Sample], options: &Options) -> Result<Trace, Error> {
     keep(samples, options, Updates::InStance)
 }
 
-/// The same without zero-velocity updates: the standstill before the walk is used, no stance after it.
+/// Tracks a walk without zero-velocity updates: the standstill before the walk is used, but no later stance.
 ///
 /// # Errors
-/// As [`walk`](super::walk).
+/// Those of [`walk`](super::walk).
 pub fn without_updates(samples: &[Sample], options: &Options) -> Result<Trace, Error> {
     keep(samples, options, Updates::OnlyAtStart)
 }

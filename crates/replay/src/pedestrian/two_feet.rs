@@ -1,4 +1,4 @@
-//! Two sensors on one walk, one on each foot or both on one: their paths stay together.
+//! Two sensors on one walk, one on each foot or both on one foot: their paths stay together.
 
 mod meeting;
 mod problem;
@@ -9,41 +9,42 @@ use self::problem::{OWN, Problem, Solved};
 use super::path::PathErrors;
 use super::{Stride, Walk, position_at};
 
-/// Meetings without which nothing is said.
+/// The fewest meetings from which a correction is computed.
 const FEWEST: usize = 8;
-/// Root mean square of what no error of a path explains, m, beyond which the logs are not of two feet of one walk.
+/// The root mean square of the unexplained residuals, m, beyond which the logs are not of two feet of one walk.
 const APART: f64 = 0.35;
-/// Root mean square distance, m, beyond which they are not of two sensors on one foot.
+/// The root mean square distance, m, beyond which the logs are not of two sensors on one foot.
 const APART_ON_ONE_FOOT: f64 = 0.15;
 
-/// How well the other sensor fitted.
+/// How well the path of the other sensor fits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BothFeet {
-    /// How often both were at one place.
+    /// The number of times both were at one place.
     pub meetings: usize,
-    /// How far apart they were there, beyond an offset that is the same all the way, root mean square, m.
+    /// The root mean square distance between them there, beyond an offset that is constant along the way, m.
     pub distance_m: f64,
-    /// Standard deviation of the rate of the heading, rad/s, that is left …
+    /// The remaining standard deviation of the heading's rate, rad/s.
     pub rate_sigma: f64,
-    /// … and of each stride by itself, each axis, m.
+    /// The remaining standard deviation of each stride's own error, for each axis, m.
     pub stride_sigma: f64,
 }
 
 impl Walk {
-    /// Corrects the path by that of the other foot, on the same clock: where a foot passes the other, both are at nearly the same
-    /// place. Two sensors on one foot are so where they stand. Rate of the heading, scale and errors of strides are the likeliest
-    /// of both, given how large they are for either ([`PathUncertainty`](kestirim_pedestrian::PathUncertainty)), by least squares
-    /// over the whole walk; the frame of the other need not be known. Heights and the lengths of strides stay.
+    /// Corrects the path by that of the other foot, on the same clock: where one foot passes the other, both are at
+    /// nearly the same place. Two sensors on one foot are at one place where they stand. Heading rate, scale and errors
+    /// of strides are the most likely ones for both paths, given their size for either
+    /// ([`PathUncertainty`](kestirim_pedestrian::PathUncertainty)), by least squares over the whole walk; the frame of
+    /// the other path need not be known. Heights and the lengths of strides remain unchanged.
     ///
-    /// Standard deviations are those that remain, if rates of both are independent, and errors of strides of two feet. Scales are
-    /// not taken to be: what the tracker has wrong of a foot it has wrong of the other.
+    /// Standard deviations are those that remain if the rates of both are independent, and the stride errors of two
+    /// feet. Scales are not assumed to be independent: the tracker makes the same errors for both feet.
     ///
     /// The idea is that of Skog, Nilsson, Zachariah and Händel (Fusing the information from two navigation systems using an upper
     /// bound on their maximum spatial separation, IPIN 2012); the bound here is a standard deviation, and at each meeting.
     ///
     /// # Errors
-    /// A sentence if both are seldom at one place, if the paths do not fit, if they are the same or were joined before, or if
-    /// another source, a magnetometer, has corrected the heading of one alone: the walk stays as it was.
+    /// A sentence if both are seldom at one place, if the paths do not fit, if they are the same or were joined before,
+    /// or if another source, a magnetometer, has corrected the heading of only one: the walk then remains unchanged.
     pub fn join_other_foot(&mut self, other: &Self) -> Result<BothFeet, String> {
         let refused = |why: &str| Err(format!("the other foot is not used: {why}"));
         if self.track == other.track {
@@ -52,7 +53,7 @@ impl Walk {
         if self.both_feet.is_some() || other.both_feet.is_some() {
             return refused("both were joined before");
         }
-        // Half of the one's drift would be put into the other.
+        // Half of one path's drift would be put into the other.
         if self.heading_rate.is_some() != other.heading_rate.is_some() {
             return refused("a magnetometer has corrected the heading of one alone");
         }
@@ -100,12 +101,13 @@ impl Walk {
             if !is_of_one_foot && problem.is_seen(stride.time_us) {
                 seen += 1.0;
             }
-            // The half of how far strides lead apart is taken back, as well as it is known; of their sum nothing is known.
+            // Half of the difference between both paths' stride errors is removed, as accurately as it is known; their
+            // sum is unknown.
             let known = problem.correction_variance(&solved.solution, stride.time_us);
             let unseen = (index + 1) as f64 - seen;
             stepped = own * (unseen + 0.5 * seen) + 0.25 * known.min(2.0 * own * seen);
             let of_axis = |axis: usize| (of_both[(axis, axis)] + stepped).sqrt();
-            // A lost heading is no constant rate, so these errors do not describe it.
+            // A lost heading is not a constant rate, so these errors do not describe it.
             let [x, y] =
                 if is_unseen { [0, 1].map(|k| stride.sigma_m[k]) } else { [0, 1].map(of_axis) };
             stride.sigma_m = [x, y, stride.sigma_m[2]];

@@ -1,4 +1,4 @@
-//! Feeds a walk to the tracker, in the number type, mode and shape that were chosen.
+//! Feeds a walk to a tracker with the chosen number type, mode and shape.
 
 use std::marker::PhantomData;
 
@@ -23,52 +23,52 @@ use crate::{Number, ScalarKind};
 
 const NO_STRIDE: &str = "no stride was found: the sensor is not on a foot, or nobody walked";
 
-/// What a tracker makes of a walk, in the room frame.
+/// A tracked walk, in the room frame.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Walk {
-    /// One position for every sample.
+    /// The positions, one for every sample.
     pub track: Vec<TrackPoint>,
-    /// One entry for every stride, in order.
+    /// The strides, in order.
     pub strides: Vec<Stride>,
-    /// Horizontal, stance to stance, m.
+    /// The horizontal length of the path, from stance to stance, m.
     pub path_length_m: f64,
     /// Horizontal distance from start to end, m.
     pub closure_m: f64,
-    /// The rate at which the heading drifted, rad/s, as a magnetometer, the other foot, right angles and a closed path showed it
-    /// and as it was corrected by: the sum.
+    /// The drift rate of the heading that was corrected, rad/s: the sum of what a magnetometer, the other foot, right
+    /// angles and a closed path showed.
     pub heading_rate: Option<f64>,
-    /// How well it went along walls at right angles, if it was [corrected by them](Self::align_to_right_angles).
+    /// How well the walk follows walls at right angles, if it was [corrected by them](Self::align_to_right_angles).
     pub right_angles: Option<RightAngles>,
     /// How well the other sensor fitted, if there was one and the walk was [corrected by it](Self::join_other_foot).
     pub both_feet: Option<BothFeet>,
-    /// How far from the start the end was, m, before the walk was [closed](Self::close).
+    /// The distance of the end from the start, m, before the walk was [closed](Self::close).
     pub gap_m: Option<f64>,
-    /// What is suspicious about the sensor or the walk.
+    /// The warnings about the sensor or the walk.
     pub warnings: Vec<String>,
-    /// The class of sensor that it was tracked for.
+    /// The class of sensor for which it was tracked.
     pub sensor: SensorClass,
-    /// Why it suffers.
+    /// The doubts about the walk.
     pub doubts: Health,
-    /// How far it can be relied upon, where that changes: from which entry of the track on.
+    /// How far the walk can be relied upon: each change, with the index of the track from which on it holds.
     pub health: Vec<(usize, State)>,
 }
 
 /// One stride of the foot, from stance to stance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stride {
-    /// When the stance ends to which it led, µs.
+    /// The end of the stance that follows the stride, µs.
     pub time_us: u64,
-    /// Where the foot stands then, m.
+    /// The position of the foot at that time, m.
     pub position: [f64; 3],
-    /// Horizontal distance from the stance before, m.
+    /// The horizontal distance from the previous stance, m.
     pub length_m: f64,
-    /// Time from the stance before, s.
+    /// The time since the previous stance, s.
     pub duration_s: f64,
-    /// Turn with respect to the stride before, rad, anticlockwise.
+    /// The turn with respect to the previous stride, rad, anticlockwise.
     pub heading_change_rad: f64,
-    /// For how long it is not known how the foot moved on the way, s.
+    /// The time during the stride for which the motion of the foot is unknown, s.
     pub unseen_s: f64,
-    /// By how much the body turned beyond the end of its gyroscope's range on the way, rad.
+    /// The angle turned during the stride beyond the end of the gyroscope's range, rad.
     pub bridged_rad: f64,
     /// Relative error of gravity at rest so far, with its standard deviation.
     pub gravity_off: f64,
@@ -79,12 +79,12 @@ pub struct Stride {
 /// Tracks a walk.
 ///
 /// # Errors
-/// If the log is too short or holds a sample that the tracker refuses.
+/// An error if the log is too short or holds a sample that the tracker rejects.
 pub fn walk(samples: &[Sample], options: &Options) -> Result<Walk, Error> {
     watched(samples, options, Updates::InStance, &mut |_| ())
 }
 
-/// Tracks a walk and lets `see` each moment of it.
+/// Tracks a walk and passes each moment of it to `see`.
 pub(super) fn watched(
     samples: &[Sample],
     options: &Options,
@@ -118,7 +118,7 @@ fn tracked(
     if let Some(from) = carried(samples) {
         walk.doubt_from(from, Reason::Innovations);
         let seconds = (samples[from].time_us - samples[0].time_us) as f64 * 1e-6;
-        // The first to be read: gravity that is implausible may be this.
+        // This warning comes first: implausible gravity may be due to it.
         walk.warnings.insert(0, format!(
             "{seconds:.0} s after the start the foot is carried while it stands (by a lift, an escalator, a vehicle): how far \
              no sensor on the foot tells, and places from there on are wrong"
@@ -222,15 +222,15 @@ impl Walk {
         self.strides.extend(estimate.stride.as_ref().map(Stride::from_estimate));
     }
 
-    /// From this entry of the track on the walk suffers from that.
+    /// Marks the walk as affected by a reason from this entry of the track on.
     fn doubt_from(&mut self, from: usize, reason: Reason) {
         self.doubts.add(reason);
         let place = self.health.partition_point(|(before, _)| *before <= from);
         self.health.insert(place, (from, reason.state()));
     }
 
-    /// From here on the walk is no better than its warnings say; that it began without a standstill is told at the
-    /// end, when none came.
+    /// Marks the walk as no better than its warnings from here on. That it began without a standstill is reported at
+    /// the end, if none came.
     fn doubt(&mut self, warnings: Warnings) {
         let state = Warnings { never_still: false, ..warnings }.health().state();
         let before = self.health.last().map_or(State::Good, |(_, before)| *before);
@@ -252,8 +252,8 @@ impl Walk {
         })
     }
 
-    /// Standard deviations of the position at times that ascend, µs: those of the stride before, or, where the way was not
-    /// seen as a whole, of the one that it is, m.
+    /// Standard deviations of the position at ascending times, µs: those of the previous stride, or, if the motion was
+    /// not completely observed, those of the current one, m.
     pub fn sigmas_m(&self, times_us: impl Iterator<Item = u64>) -> impl Iterator<Item = [f64; 3]> {
         let before_the_first = PathUncertainty::<f64>::new(self.sensor.into());
         let mut now = before_the_first.standard_deviation().into();
@@ -291,7 +291,7 @@ impl Walk {
         }
     }
 
-    /// Which strides were not seen as a whole, if any.
+    /// A sentence about the strides that were not completely observed, if any.
     fn unseen(&self) -> Option<String> {
         let mut strides = self.strides.iter().filter(|stride| stride.is_unseen());
         let first = strides.next()?;
@@ -335,13 +335,13 @@ impl Stride {
         }
     }
 
-    /// Whether a part of the way was not seen.
+    /// Whether a part of the stride was not observed.
     pub(super) fn is_unseen(&self) -> bool {
         self.unseen_s > 0.0
     }
 }
 
-/// A sample as a tracker takes it.
+/// Converts a sample to the tracker's type.
 pub(super) fn imu_sample<T: Scalar>(sample: &Sample) -> ImuSample<T> {
     ImuSample {
         time_us: sample.time_us,

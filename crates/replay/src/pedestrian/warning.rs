@@ -1,4 +1,4 @@
-//! What a tracker finds suspicious, in words.
+//! The warnings of a tracker, in words.
 
 use kestirim_pedestrian::Warnings;
 

@@ -1,21 +1,21 @@
-//! Where anchors are.
+//! The places of anchors.
 
 /// Anchors in the order of their file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Anchors {
-    /// Their names, as logs use them.
+    /// The names of the anchors, as logs use them.
     pub names: Vec<String>,
-    /// Their places in the room (right-handed, z up), m.
+    /// The places of the anchors in the room (right-handed, z up), m.
     pub positions: Vec<[f64; 3]>,
 }
 
 impl Anchors {
-    /// The place of a name in the list.
+    /// The index of an anchor by its name.
     pub fn find(&self, name: &str) -> Option<usize> {
         self.names.iter().position(|known| known == name)
     }
 
-    /// The smallest rectangle around them: two opposite corners, m.
+    /// The smallest rectangle around the anchors: two opposite corners, m.
     pub fn rectangle(&self) -> [f64; 4] {
         let [least, most] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         self.positions.iter().fold([least[0], least[1], most[0], most[1]], |corners, &[x, y, _]| {
@@ -23,7 +23,7 @@ impl Anchors {
         })
     }
 
-    /// What a tag's height is taken to be when nobody says, m.
+    /// The mean height of the anchors, which is assumed for a tag of unknown height, m.
     pub fn mean_height(&self) -> f64 {
         self.positions.iter().map(|[_, _, z]| z).sum::<f64>() / self.positions.len().max(1) as f64
     }

@@ -1,4 +1,4 @@
-//! What the ranges of a tag show before it is tracked.
+//! Checks of the ranges of a tag before it is tracked.
 
 mod geometry;
 mod in_space;
@@ -15,27 +15,28 @@ use super::{Anchors, Event, Range, Setup};
 use crate::Finding;
 use crate::metrics::standard_deviation;
 
-/// Ranges at the same largest value, of so many and such a share, were cut there.
+/// The fewest ranges with the same largest value, and the smallest share (`CUT_SHARE`), from which on ranges were cut
+/// there.
 const CUT: usize = 20;
 const CUT_SHARE: f64 = 0.03;
 
 /// What is known of the tag's height.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum KnownHeight {
-    /// Nothing: it is one of the unknowns, of a tag in space.
+    /// Unknown, and estimated along with the position, for a tag in space.
     Unknown,
-    /// Nothing, of a tag in the plane: the ranges do not tell.
+    /// Unknown, for a tag in the plane: the ranges do not tell it.
     NotFound,
-    /// It was said, m.
+    /// Given by the user, m.
     Said(f64),
-    /// It was found from the ranges, m, or assumed.
+    /// Found from the ranges, or assumed, m.
     Found(f64),
-    /// It changes with time.
+    /// Changing with time.
     Varying,
 }
 
-/// What the parts of a recording show, of a tag whose height and room are known or not, among anchors that measure too long by
-/// `biases` (m) if they are calibrated.
+/// The findings about the parts of a recording: of a tag whose height and room may be known, among anchors whose ranges
+/// are too long by `biases` (m) if they are calibrated.
 pub fn check<'a>(
     anchors: &Anchors,
     parts: impl IntoIterator<Item = &'a [Event]>,
@@ -92,7 +93,7 @@ fn ranges(events: &[Event]) -> Vec<Range> {
     events.iter().filter_map(range).collect()
 }
 
-/// Ranges without what their anchors measure too long.
+/// The ranges without the biases of their anchors.
 fn freed(parts: &[Vec<Range>], biases: &[f64]) -> Vec<Vec<Range>> {
     let free = |range: &Range| {
         let bias = biases.get(range.anchor).copied().unwrap_or_default();
@@ -101,7 +102,7 @@ fn freed(parts: &[Vec<Range>], biases: &[f64]) -> Vec<Vec<Range>> {
     parts.iter().map(|ranges| ranges.iter().map(free).collect()).collect()
 }
 
-/// How often each anchor is heard, and what it says that is no range.
+/// The rate at which each anchor is heard, and anchors whose values are not ranges.
 fn links<'a>(
     parts: &[Vec<Range>],
     anchors: usize,
@@ -144,7 +145,7 @@ fn links<'a>(
     findings
 }
 
-/// How many ranges were cut at a largest value, and that value, m.
+/// The number of ranges that were cut at a largest value, and that value, m.
 fn cut_at(parts: &[Vec<Range>]) -> Option<(usize, f64)> {
     let all: Vec<&Range> = parts.iter().flatten().filter(|it| it.metres.is_finite()).collect();
     let metres: Vec<f64> = all.iter().map(|it| it.metres).collect();
@@ -152,7 +153,7 @@ fn cut_at(parts: &[Vec<Range>]) -> Option<(usize, f64)> {
     let at_most: Vec<usize> =
         all.iter().filter(|it| it.metres == most).map(|it| it.anchor).collect();
     let is_often = at_most.len() >= CUT && at_most.len() as f64 >= CUT_SHARE * metres.len() as f64;
-    // A tag that stands gives the same range to one anchor again and again.
+    // A tag that stands still gives the same range to one anchor again and again.
     let of_several = at_most.iter().any(|anchor| *anchor != at_most[0]);
     let is_cut = is_often && of_several && standard_deviation(&metres) > stuck::MOVING_M;
     is_cut.then_some((at_most.len(), most))
@@ -174,7 +175,7 @@ mod tests {
 
     use super::*;
 
-    /// Whether three anchors, which measure 0.3 m too long, are told to contradict each other.
+    /// Whether three anchors with ranges that are 0.3 m too long are reported to contradict each other.
     fn contradict(biases: Option<&[f64]>) -> bool {
         let positions = vec![[0.0, 0.0, 2.0], [8.0, 0.0, 2.0], [4.0, 6.0, 2.0]];
         let names = (0..positions.len()).map(|k| k.to_string()).collect();

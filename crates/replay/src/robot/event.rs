@@ -1,30 +1,30 @@
-//! What a tag's sensors say, in the order in which trackers take it.
+//! Events: the data of a tag's sensors, in the order in which trackers process them.
 
 use std::iter::from_fn;
 
 use super::Course;
 
-/// What is given to a tracker. Times are those of the log's clock, µs.
+/// An input of a tracker. Times are those of the log's clock, µs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Event {
     /// A range was measured.
     Range(Range),
-    /// It was heard by how much one anchor is farther than another.
+    /// A difference of the distances to two anchors was measured.
     Difference(Difference),
     /// The IMU was read.
     Inertial(Inertial),
     /// The wheels were read.
     Wheels(Wheels),
-    /// The height of the tag became known.
+    /// The height of the tag was given.
     Height {
-        /// When.
+        /// The time.
         time_us: i64,
         /// The height, m.
         metres: f64,
     },
-    /// All ranges of a time were given.
+    /// All ranges of a time have been given.
     EpochEnd {
-        /// That time.
+        /// The time of these ranges.
         time_us: i64,
     },
 }
@@ -45,36 +45,36 @@ pub struct Inertial {
 pub struct Wheels {
     /// Time of the log's clock, µs.
     pub time_us: i64,
-    /// Mean speed, m/s.
+    /// Mean speed of the wheels, m/s.
     pub speed: f64,
-    /// Difference of the speeds by the track, rad/s.
+    /// Difference of the wheels' speeds divided by the track width, rad/s.
     pub turn_rate: f64,
 }
 
 /// A range to an anchor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
-    /// When it was measured, µs.
+    /// The time of the measurement, µs.
     pub time_us: i64,
-    /// The anchor's place in the list.
+    /// The index of the anchor in the list.
     pub anchor: usize,
-    /// The range as measured, m, which may be no number.
+    /// The range as measured, m, which may be `NaN`.
     pub metres: f64,
 }
 
-/// By how much the second of two anchors is farther than the first.
+/// How much farther the second of two anchors is than the first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Difference {
-    /// When it was heard, µs.
+    /// The time of the measurement, µs.
     pub time_us: i64,
-    /// The anchors' places in the list.
+    /// The indices of the anchors in the list.
     pub anchors: [usize; 2],
     /// The difference, m.
     pub metres: f64,
 }
 
 impl Event {
-    /// When it was, µs.
+    /// The time of the event, µs.
     pub const fn time_us(&self) -> i64 {
         match self {
             Self::Range(Range { time_us, .. })
@@ -87,40 +87,40 @@ impl Event {
     }
 }
 
-/// One line of a log: a range, or that there was none.
+/// One line of a log: a range, or the absence of one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RangeRow {
     /// Time of the log's clock, µs.
     pub time_us: i64,
-    /// The anchor's place in the list.
+    /// The index of the anchor in the list.
     pub anchor: usize,
-    /// The range, m, as logged, which may be no number; none if there was none.
+    /// The range as logged, m, which may be `NaN`; `None` if there was none.
     pub range: Option<f64>,
 }
 
 /// The samples of each sensor, in the order of its log.
 #[derive(Debug, Clone, Default)]
 pub struct Sensors {
-    /// Ranges.
+    /// The ranges.
     pub ranges: Vec<RangeRow>,
-    /// Differences of distances: of a tag that has no ranges.
+    /// The differences of distances, for a tag without ranges.
     pub differences: Vec<Difference>,
-    /// Samples of the IMU.
+    /// The samples of the IMU.
     pub inertial: Vec<Inertial>,
-    /// Samples of the wheels.
+    /// The samples of the wheels.
     pub wheels: Vec<Wheels>,
-    /// Height of the tag over time, m.
+    /// The height of the tag over time, m.
     pub height: Option<Course<1>>,
 }
 
 impl Sensors {
-    /// Ranges alone.
+    /// Sensors with ranges alone.
     pub fn ranges(ranges: Vec<RangeRow>) -> Self {
         Self { ranges, ..Self::default() }
     }
 
-    /// Drops samples whose time is more than 10 s ahead of one that follows, and warns of them if there were any: a single
-    /// wrong time would make everything after it too late.
+    /// Drops samples whose time is more than 10 s ahead of one that follows, and returns a warning if there were any: a
+    /// single wrong time would make everything after it late.
     pub fn drop_far_ahead(&mut self) -> Option<String> {
         let ahead = far_ahead_dropped(&mut self.ranges, |row| row.time_us)
             + far_ahead_dropped(&mut self.differences, |difference| difference.time_us)
@@ -131,8 +131,8 @@ impl Sensors {
         })
     }
 
-    /// All in the order of their times. No sensor's own samples are reordered: times that go backwards are the
-    /// tracker's to refuse, and ranges that come late end no epoch.
+    /// All events in the order of their times. The samples of one sensor are never reordered: the tracker rejects times
+    /// that go backwards, and ranges that come late end no epoch.
     pub fn events(&self) -> Vec<Event> {
         let mut events = Vec::with_capacity(2 * self.ranges.len() + self.inertial.len());
         let mut motion = self.motion().into_iter().peekable();
@@ -153,7 +153,7 @@ impl Sensors {
         events
     }
 
-    /// Ranges and differences with their times, or that there was none.
+    /// Ranges and differences with their times, or `None` for a line without a range.
     fn radio(&self) -> Vec<(i64, Option<Event>)> {
         let range = |row: &RangeRow| {
             let (time_us, anchor) = (row.time_us, row.anchor);
@@ -164,14 +164,14 @@ impl Sensors {
         self.ranges.iter().map(range).chain(self.differences.iter().map(difference)).collect()
     }
 
-    /// Samples of IMU and wheels.
+    /// The samples of IMU and wheels.
     fn motion(&self) -> Vec<Event> {
         let inertial = self.inertial.iter().copied().map(Event::Inertial);
         merged(inertial, self.wheels.iter().copied().map(Event::Wheels))
     }
 }
 
-/// Later samples may go back behind a time by this, µs; one that they go back behind farther was wrong.
+/// The largest step back in time of later samples, µs; a sample that they go back further behind had a wrong time.
 const LARGEST_STEP_BACK_US: i64 = 10_000_000;
 
 fn far_ahead_dropped<S>(samples: &mut Vec<S>, time_us: impl Fn(&S) -> i64) -> usize {
@@ -189,7 +189,7 @@ fn far_ahead_dropped<S>(samples: &mut Vec<S>, time_us: impl Fn(&S) -> i64) -> us
     before - samples.len()
 }
 
-/// Both in the order of their times, the first before the second.
+/// Merges two sequences in the order of their times; at equal times, the first comes before the second.
 fn merged(
     first: impl IntoIterator<Item = Event>,
     second: impl Iterator<Item = Event>,

@@ -1,38 +1,39 @@
-//! The height of a tag of which nobody says how high it is: from its ranges, or not at all.
+//! The height of a tag for which none is given: found from its ranges, or not at all.
 
 use kestirim_uwb_tracker::{HeightFinder, RangeSample};
 
 use super::{Error, Event, MOST, Range, Setup};
 
-/// What an unknown height may add to the position's standard deviation, m: as much as everything else does among
-/// anchors as they come (the book's table has 9 to 21 cm).
+/// The largest standard deviation that an unknown height may add to the position, m: as much as everything else does
+/// among typical anchors (the book's table has 9 to 21 cm).
 const LARGEST_SIGMA_M: f64 = 0.15;
-/// A tag is looked for so high above the floor at least, m, as the finder looks.
+/// The smallest height above the floor up to which a tag is searched for, m, as in the finder.
 const LEAST_ROOM_M: f64 = 2.0;
 /// Time between the parts of a recording, µs: longer than ranges are fresh.
 const APART_US: u64 = 10_000_000;
 
-/// The height as the ranges tell it.
+/// The height of a tag, found from its ranges.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundHeight {
     /// The height, m.
     pub metres: f64,
     /// Its standard deviation, m.
     pub sigma_m: f64,
-    /// What it adds to the position's standard deviation, m.
+    /// The standard deviation that it adds to the position, m.
     pub position_sigma_m: f64,
-    /// What the anchors measure too long at this height, m. Empty of calibrated ones, which keep what was measured.
+    /// The biases of the anchors at this height, m. Empty for calibrated anchors, which keep their own.
     pub biases: Vec<f64>,
-    /// Whether the ranges tell it; else it is anywhere between floor and highest anchor, and does not matter.
+    /// Whether the ranges tell the height; otherwise it is anywhere between the floor and the highest anchor, and does
+    /// not matter.
     pub is_of_ranges: bool,
 }
 
 impl FoundHeight {
-    /// The height at which the tag is whose parts were recorded one after the other, from its ranges alone.
+    /// Finds the height of a tag from its ranges alone, in parts that were recorded one after the other.
     ///
     /// # Errors
-    /// [`Error::Anchors`] if they will not do, [`Error::HeightUnknown`] or [`Error::HeightVague`] if the ranges do not
-    /// tell it.
+    /// [`Error::Anchors`] if the anchors are unsuitable, [`Error::HeightUnknown`] or [`Error::HeightVague`] if the
+    /// ranges do not tell the height.
     pub fn of_parts<'a>(
         setup: &Setup,
         parts: impl IntoIterator<Item = &'a [Event]>,
@@ -58,10 +59,10 @@ impl FoundHeight {
         finder.found()
     }
 
-    /// The same, if positions may depend on it.
+    /// Returns the height if it is accurate enough for positions.
     ///
     /// # Errors
-    /// [`Error::HeightVague`]: they would be too uncertain.
+    /// [`Error::HeightVague`] if positions would be too uncertain.
     fn accepted(self) -> Result<Self, Error> {
         let Self { sigma_m, position_sigma_m, .. } = self;
         if position_sigma_m <= LARGEST_SIGMA_M {
@@ -71,10 +72,10 @@ impl FoundHeight {
     }
 }
 
-/// The height of a tag among anchors so far apart that it hardly matters: between the floor and the highest anchor, or 2 m
-/// above the floor if that is higher; none if it matters.
+/// The height of a tag among anchors so far apart that it hardly matters: between the floor and the highest anchor, or
+/// 2 m above the floor if that is higher; `None` if it matters.
 ///
-/// A range over the distance d is longer by Δ²/2d for a difference Δ of heights: 5 cm for 2 m over 40 m.
+/// A range over the distance d is longer by Δ²/2d for a height difference Δ: 5 cm for 2 m over 40 m.
 fn of_no_matter(anchors: &[[f64; 3]]) -> Option<FoundHeight> {
     let count = anchors.len() as f64;
     let centre = [0, 1].map(|axis| anchors.iter().map(|place| place[axis]).sum::<f64>() / count);
@@ -84,7 +85,7 @@ fn of_no_matter(anchors: &[[f64; 3]]) -> Option<FoundHeight> {
     let floor = heights().fold(0.0, f64::min);
     let highest = heights().fold(floor + LEAST_ROOM_M, f64::max);
     let position_sigma_m = (highest - floor).powi(2) / (2.0 * reach);
-    // Evenly distributed.
+    // The height is assumed to be uniformly distributed.
     let sigma_m = (highest - floor) / 12_f64.sqrt();
     let metres = 0.5 * (floor + highest);
     let found =
@@ -92,20 +93,20 @@ fn of_no_matter(anchors: &[[f64; 3]]) -> Option<FoundHeight> {
     (position_sigma_m <= LARGEST_SIGMA_M).then_some(found)
 }
 
-/// Finds the height from ranges as they come in.
+/// A search for the height in ranges as they come in.
 #[derive(Debug)]
 pub struct HeightSearch {
     search: HeightFinder<f64, MOST>,
     of_no_matter: Option<FoundHeight>,
-    /// How many anchors are not calibrated.
+    /// The number of anchors that are not calibrated.
     uncalibrated: usize,
 }
 
 impl HeightSearch {
-    /// For the anchors of a setup.
+    /// A search among the anchors of a setup.
     ///
     /// # Errors
-    /// [`Error::Anchors`] if they will not do.
+    /// [`Error::Anchors`] if the anchors are unsuitable.
     pub fn new(setup: &Setup) -> Result<Self, Error> {
         let places = setup.anchors::<f64>();
         let (finder, uncalibrated) = if setup.biases.is_some() {
@@ -117,17 +118,17 @@ impl HeightSearch {
         Ok(Self { search: finder?, of_no_matter, uncalibrated })
     }
 
-    /// Takes in a range, at a time in µs since the recording began; whether the height may be another then.
+    /// Processes a range, at a time in µs since the recording began; returns whether the height may have changed.
     pub fn take(&mut self, time_us: u64, range: &Range) -> bool {
         let (anchor, range) = (range.anchor, range.metres);
-        // What a tracker refuses says nothing here either.
+        // A range that a tracker rejects tells nothing here either.
         self.search.range(&RangeSample { time_us, anchor, range }).unwrap_or(false)
     }
 
     /// The height, if the ranges tell it.
     ///
     /// # Errors
-    /// [`Error::HeightUnknown`] or [`Error::HeightVague`]: they do not.
+    /// [`Error::HeightUnknown`] or [`Error::HeightVague`] if they do not.
     pub fn found(&self) -> Result<FoundHeight, Error> {
         if let Some(found) = &self.of_no_matter {
             return Ok(found.clone());

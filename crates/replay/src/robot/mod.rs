@@ -1,7 +1,7 @@
-//! A tag among ultra-wideband anchors.
+//! Tags among ultra-wideband anchors.
 //!
-//! [`Sensors`] put what was measured in the order of time, a [`Setup`] says what is known beforehand, [`track`] makes a
-//! [`Trace`] of both. Frame: *room*, right-handed with z up, as the anchors are given.
+//! [`Sensors`] put measurements in the order of time, a [`Setup`] holds what is known beforehand, and [`track`]
+//! computes a [`Trace`] from both. Frame: *room*, right-handed with z up, in which the anchors are given.
 
 mod anchors;
 mod check;
@@ -33,5 +33,5 @@ pub use self::trackers::{
 };
 pub use self::tuning::Tuning;
 
-/// The most anchors that the trackers are built for.
+/// The largest number of anchors for which the trackers are built.
 pub const MOST: usize = 32;

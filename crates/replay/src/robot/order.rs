@@ -1,15 +1,15 @@
-//! Ranges that a log has in another order than that of their times.
+//! Sorting of ranges that a log does not hold in the order of time.
 
 use super::{RangeRow, Sensors};
 
-/// An anchor of fewer ranges says nothing of the order.
+/// The fewest ranges of an anchor that tell the order of a log.
 const FEWEST: usize = 10;
 
 impl Sensors {
-    /// Puts ranges in the order of their times if the log has all of one anchor before all of another, or the last first;
-    /// a warning that says which.
+    /// Sorts ranges by time if the log has all ranges of one anchor before all of another, or the last ones first;
+    /// returns a warning that says which.
     ///
-    /// Times that go backwards in any other way are left to the tracker, which refuses them.
+    /// Times that go backwards in any other way are left to the tracker, which rejects them.
     pub fn put_in_order(&mut self) -> Option<&'static str> {
         let told = if are_reversed(&self.ranges) {
             "the log has its last ranges first: they are taken in the order of their times"
@@ -18,7 +18,7 @@ impl Sensors {
         } else {
             return None;
         };
-        // Stable, so that whoever has the log can say which of its ranges is where.
+        // The sort is stable, so that the place of each range in the log remains traceable.
         self.ranges.sort_by_key(|row| row.time_us);
         Some(told)
     }
@@ -39,7 +39,7 @@ fn are_by_anchor(rows: &[RangeRow]) -> bool {
     let mut heard: Vec<usize> = anchors.iter().map(|rows| rows[0].anchor).collect();
     heard.sort_unstable();
     heard.dedup();
-    // Anchors that are heard one after the other are in order as they are.
+    // Anchors that are heard one after the other are in order already.
     let go_back =
         || anchors.windows(2).any(|pair| pair[1][0].time_us < pair[0][pair[0].len() - 1].time_us);
     anchors.len() >= 2 && heard.len() == anchors.len() && anchors.iter().all(is_whole) && go_back()
@@ -55,7 +55,7 @@ mod tests {
         (0..20).flat_map(|k| [row(k, 0), row(k, 1)]).collect()
     }
 
-    /// Whether the order was another, and ranges stand in that of their times.
+    /// Whether the order was reported as wrong, and whether ranges are sorted by time afterwards.
     fn ordered(rows: Vec<RangeRow>) -> (bool, bool) {
         let mut sensors = Sensors::ranges(rows);
         let told = sensors.put_in_order().is_some();

@@ -1,4 +1,4 @@
-//! What is known beforehand: which tracker, among which anchors, with which constants.
+//! Setups: what is known beforehand, such as the tracker, the anchors and the constants.
 
 use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::Room;
@@ -8,7 +8,7 @@ use nalgebra::SVector;
 use super::{FoundHeight, Tuning};
 use crate::ScalarKind;
 
-/// How ranges become positions.
+/// The method by which ranges become positions.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum TrackerKind {
@@ -28,7 +28,7 @@ pub enum TrackerKind {
     Default,
 }
 
-/// In how many dimensions.
+/// The number of dimensions of positions.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Dimensions {
@@ -42,33 +42,32 @@ pub enum Dimensions {
 }
 
 impl TrackerKind {
-    /// Forgetting factor, least and greatest variance (m²) of [`Self::Aekf`].
+    /// The forgetting factor, the least and the greatest variance (m²) of [`Self::Aekf`].
     pub const AEKF_LEARNING: [f64; 3] = [0.99, 0.0025, 9.0];
 }
 
-/// Everything that can be chosen about a tracker, and the anchors it is for.
+/// The options of a tracker, and its anchors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setup {
-    /// How ranges become positions.
+    /// The method by which ranges become positions.
     pub tracker: TrackerKind,
-    /// In how many dimensions.
+    /// The number of dimensions of positions.
     pub dimensions: Dimensions,
     /// Number type of the estimator.
     pub scalar: ScalarKind,
-    /// Where the tag can be, m.
+    /// The rectangle in which the tag can be: two opposite corners, m.
     pub room: Option<[f64; 4]>,
-    /// Height of the tag to begin with, m.
+    /// The initial height of the tag, m.
     pub height_m: f64,
-    /// Places of the anchors, m.
+    /// The places of the anchors, m.
     pub anchors: Vec<[f64; 3]>,
-    /// What they measure too long by, m, if they are calibrated.
+    /// The biases of the anchors, m, if they are calibrated.
     pub biases: Option<Vec<f64>>,
-    /// Whether the log has the robot's wheels.
+    /// Whether the log contains the robot's wheels.
     pub has_wheels: bool,
-    /// The height as the ranges tell it, if nobody else does, with what uncalibrated anchors measure too long
-    /// then.
+    /// The height found from the ranges, if none is given, with the biases of uncalibrated anchors at that height.
     pub found: Option<FoundHeight>,
-    /// Constants of the tracker.
+    /// The constants of the tracker.
     pub tuning: Tuning,
 }
 
@@ -89,13 +88,13 @@ impl Setup {
         }
     }
 
-    /// The same for a tag at the height that was found.
+    /// Sets the height that was found.
     #[must_use]
     pub fn at(self, found: FoundHeight) -> Self {
         Self { height_m: found.metres, found: Some(found), ..self }
     }
 
-    /// Whether the default tracker is moved by the wheels: in the plane.
+    /// Whether the default tracker uses the wheels, which it does in the plane only.
     pub fn is_wheeled(&self) -> bool {
         self.has_wheels && self.dimensions == Dimensions::Two
     }

@@ -1,36 +1,37 @@
-//! Where anchors stand, from the ranges between them.
+//! Surveys of anchors: their places from the ranges between them.
 //!
-//! A free network: places that fit the ranges best, robustly (Student's distribution with one degree of freedom, after Cauchy), by
-//! damped least squares from many starts; its covariance is that of inner constraints (Baarda 1973), about the anchors' centre.
+//! A free network: the places that fit the ranges best, robustly (Student's distribution with one degree of freedom,
+//! after Cauchy), by damped least squares from many starts; its covariance is that of inner constraints (Baarda 1973),
+//! about the anchors' centre.
 
 mod network;
 
 use self::network::{Network, Shape};
 
-/// Ranges between two anchors.
+/// The ranges between two anchors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pair {
-    /// The anchors' places in the list, the smaller first.
+    /// The indices of the anchors in the list, the smaller first.
     pub anchors: [usize; 2],
-    /// The median of what was measured, in either direction, m.
+    /// The median of the ranges in either direction, m.
     pub metres: f64,
-    /// How many ranges there were.
+    /// The number of ranges.
     pub count: usize,
 }
 
-/// Where anchors stand.
+/// The places of anchors, as surveyed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Survey {
-    /// Their places, m: the first is the origin, the second on the positive x axis, the next that is beside it at positive y in
-    /// the plane z = 0, and the next beside that plane above it.
+    /// The places of the anchors, m: the first is the origin, the second on the positive x axis, the next that is
+    /// beside it at positive y in the plane z = 0, and the next beside that plane above it.
     pub places: Vec<[f64; 3]>,
     /// Standard deviations of each place along the axes, m, about the centre of all.
     pub sigmas: Vec<[f64; 3]>,
-    /// Standard deviation of a range by what is left of them all, m; none where none is to spare.
+    /// The standard deviation of a range from all residuals, m; `None` without redundancy.
     pub range_sigma: Option<f64>,
-    /// Pairs that do not fit, and by what they are too long, m.
+    /// The pairs that do not fit, and by how much each is too long, m.
     pub left_out: Vec<(Pair, f64)>,
-    /// Anchors of which another place fits nearly as well.
+    /// The anchors for which another place fits nearly as well.
     pub ambiguous: Vec<usize>,
 }
 
@@ -38,37 +39,37 @@ pub struct Survey {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unplaced {
-    /// Too few of them are known.
+    /// There are too few anchors.
     #[error("{dimensions} dimensions need ranges between {} anchors at least, found {found}", dimensions + 1)]
     TooFew {
-        /// In how many dimensions.
+        /// The number of dimensions.
         dimensions: usize,
-        /// How many anchors there are.
+        /// The number of anchors.
         found: usize,
     },
-    /// These have fewer ranges to others than there are dimensions, or are in one line or plane with those.
+    /// These anchors have fewer ranges to others than there are dimensions, or are in one line or plane with those.
     #[error("the ranges do not determine where these anchors are, counted from 0: {0:?}")]
     Loose(Vec<usize>),
-    /// All stand in one plane, or so nearly that the ranges do not tell on which side of it each is.
+    /// All anchors stand in one plane, or so nearly that the ranges do not tell on which side of it each is.
     #[error(
         "the anchors stand in one plane, or nearly: their ranges do not tell three coordinates"
     )]
     Flat,
 }
 
-/// A deviation of this many standard deviations does not fit.
+/// The deviation beyond which a pair does not fit, in standard deviations.
 const OUTLIER: f64 = 5.0;
-/// What radios err by where nothing better is known, and what they at least do, m.
+/// The standard deviation of a range if nothing better is known, and (`LEAST_SIGMA`) its lower limit, m.
 const USUAL_SIGMA: f64 = 0.1;
 const LEAST_SIGMA: f64 = 0.02;
-/// Costs that differ by no more leave two shapes undecided: half of two standard deviations' square.
+/// The difference of costs up to which two shapes remain undecided: half the square of two standard deviations.
 const ALIKE: f64 = 2.0;
-/// Shapes of which an anchor differs by more are different, m.
+/// The difference in an anchor's distances beyond which two shapes differ, m.
 const DIFFERENT: f64 = 0.5;
-/// A place whose standard deviation is beyond this is none, m.
+/// The standard deviation beyond which a place is not determined, m.
 const LOOSE: f64 = 2.0;
 
-/// Pairs of what was measured: anchors and m, each as often as one likes; the median of each pair.
+/// Groups measurements by pairs: indices of two anchors and a range in m, any number of each; each pair has the median.
 pub fn pairs(ranges: impl IntoIterator<Item = ([usize; 2], f64)>) -> Vec<Pair> {
     let mut all = std::collections::BTreeMap::<[usize; 2], Vec<f64>>::new();
     for ([one, other], metres) in ranges {
@@ -84,8 +85,8 @@ pub fn pairs(ranges: impl IntoIterator<Item = ([usize; 2], f64)>) -> Vec<Pair> {
     all.into_iter().map(pair).collect()
 }
 
-/// Places so many anchors from the ranges between them, in two or three dimensions. Their mirror image fits as well: only
-/// who sees the room can tell.
+/// Computes the places of `anchors` anchors from the ranges between them, in two or three dimensions. Their mirror
+/// image fits as well: only somebody who sees the room can tell.
 ///
 /// # Errors
 /// [`Unplaced`].
@@ -104,7 +105,7 @@ pub fn survey(anchors: usize, pairs: &[Pair], dimensions: usize) -> Result<Surve
     if spare > 0
         && let Some(best) = shapes.first()
     {
-        // The scale of what fits, once that is known.
+        // The scale of the ranges that fit, once that is known.
         let sigma = network.spread(best, spare).max(LEAST_SIGMA);
         range_sigma = Some(sigma);
         network.sigma = sigma;
@@ -131,7 +132,7 @@ pub fn survey(anchors: usize, pairs: &[Pair], dimensions: usize) -> Result<Surve
     Ok(Survey { places: best.places, sigmas, range_sigma, left_out, ambiguous })
 }
 
-/// Anchors that stand elsewhere in another shape that fits nearly as well.
+/// The anchors with another place in a different shape that fits nearly as well.
 fn ambiguous(network: &Network<'_>, best: &Shape, shapes: &[Shape]) -> Vec<usize> {
     let alike = shapes.iter().filter(|shape| shape.cost - best.cost < ALIKE);
     let mut found: Vec<usize> = alike.flat_map(|shape| network.moved(best, shape)).collect();
@@ -157,7 +158,7 @@ mod tests {
         (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
     }
 
-    /// All pairs, which err by up to ± 5 cm.
+    /// All pairs, with errors of up to ± 5 cm.
     fn measured(places: &[[f64; 3]]) -> Vec<Pair> {
         let all = (0..places.len()).flat_map(|j| (0..j).map(move |i| [i, j]));
         let noise = |k: usize| ((k * 7919) % 11) as f64 * 0.01 - 0.05;
@@ -166,7 +167,7 @@ mod tests {
         pairs(all.enumerate().map(range))
     }
 
-    /// The largest difference of distances, which no frame changes, m.
+    /// The largest error of any distance, which does not depend on the frame, m.
     fn worst(found: &Survey, places: &[[f64; 3]]) -> f64 {
         let all = (0..places.len()).flat_map(|j| (0..j).map(move |i| (i, j)));
         let error = |(i, j): (usize, usize)| {
@@ -215,7 +216,7 @@ mod tests {
         );
         match survey(6, &measured(&flat), 3) {
             Err(Unplaced::Flat | Unplaced::Loose(_)) => {}
-            // Or heights are said to be what they are: unknown.
+            // Otherwise the heights must be reported as unknown.
             Ok(found) => assert!(
                 found
                     .sigmas

@@ -1,54 +1,54 @@
-//! Feeds a tracker, and keeps what became of every range.
+//! Feeds a tracker, and keeps the outcome of every range.
 
 use kestirim_health::{Health, Reason};
 
 use super::{Difference, Error, Event, Follow, FoundHeight, Range, Reception, Setup, build};
 
-/// What a tracker made of one part of a recording.
+/// The result of tracking one part of a recording.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trace {
-    /// One entry for each time at which there are ranges, in order.
+    /// The epochs, one for each time with ranges, in order.
     pub epochs: Vec<Epoch>,
-    /// Every range that was one, and what became of it. A difference stands here with its second anchor.
+    /// Every range that was measured, and its outcome. A difference is listed with its second anchor.
     pub ranges: Vec<(Range, Reception)>,
 }
 
-/// Where the tag was found at one epoch.
+/// The estimate at one epoch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Epoch {
     /// Time of the log's clock, µs.
     pub time_us: i64,
-    /// Where, m; none while the tracker does not know.
+    /// The position, m; `None` while the tracker does not know it.
     pub position: Option<[f64; 3]>,
-    /// Variance of x, covariance and variance of y, m², from a tracker that knows them.
+    /// Variance of x, covariance and variance of y, m², if the tracker knows them.
     pub spread: Option<[f64; 3]>,
-    /// Variance of z, m², from a tracker that estimates it, or of the height that was found.
+    /// Variance of z, m², if the tracker estimates it, or that of the height that was found.
     pub height_variance: Option<f64>,
-    /// From where the tracker found it to the other place that the ranges so far allow, m, if they allow two: the variances are
-    /// of both, also those that a smoother gives.
+    /// The vector from the position to the other place that the ranges so far allow, m, if they allow two: the
+    /// variances then cover both, also those that a smoother gives.
     pub mirror: Option<[f64; 3]>,
-    /// How far it can be relied upon.
+    /// How far the estimate can be relied upon.
     pub health: Health,
 }
 
-/// A position of a larger standard deviation is not what anybody ranges for, m.
+/// The standard deviation beyond which a position is too vague to be of use, m.
 const VAGUE_M: f64 = 1.0;
 
 impl Epoch {
-    /// Standard deviations of x, y and z, m, as far as they are known.
+    /// The standard deviations of x, y and z, m, as far as they are known.
     pub fn sigmas_m(&self) -> [Option<f64>; 3] {
         let of = |variance: f64| variance.max(0.0).sqrt();
         let [x, y] = self.spread.map_or([None; 2], |[xx, _, yy]| [xx, yy].map(|it| Some(of(it))));
         [x, y, self.height_variance.map(of)]
     }
 
-    /// Whether the position is known to a metre, or not at all.
+    /// Whether the standard deviation of the position is above a metre; false if it is unknown.
     pub fn is_vague(&self) -> bool {
         self.sigma_m().is_some_and(|sigma| sigma > VAGUE_M)
     }
 
-    /// Adds what a height that was found leaves uncertain: of itself, and a root mean square distance in the plane, in
-    /// no direction more than in another.
+    /// Adds the uncertainty due to a height that was found: that of the height itself, and a root mean square distance
+    /// in the plane, equal in all directions.
     pub(super) fn widen(&mut self, found: &FoundHeight) {
         let half = 0.5 * found.position_sigma_m * found.position_sigma_m;
         self.height_variance = Some(found.sigma_m * found.sigma_m);
@@ -58,7 +58,7 @@ impl Epoch {
         }
     }
 
-    /// Adds that it may be the other place as likely as this one, if the ranges allow one.
+    /// Adds the possibility that the tag is at the other place, with equal probability, if the ranges allow one.
     pub(super) fn doubt_side(&mut self) {
         let Some([x, y, z]) = self.mirror else { return };
         if let Some([xx, xy, yy]) = self.spread.as_mut() {
@@ -71,14 +71,14 @@ impl Epoch {
         }
     }
 
-    /// Standard deviation of the position in the plane, root of its variances' sum, m.
+    /// The standard deviation of the position in the plane, the root of the sum of its variances, m.
     pub fn sigma_m(&self) -> Option<f64> {
         self.spread.map(|[xx, _, yy]| (xx + yy).max(0.0).sqrt())
     }
 }
 
 impl Trace {
-    /// What a tracker that was built makes of events; with the uncertainty of a height that was found.
+    /// Runs a given tracker over events, with the uncertainty of a height that was found.
     pub fn by(tracker: &mut dyn Follow, setup: &Setup, events: &[Event]) -> Self {
         let mut trace = follow(tracker, events);
         if let Some(found) = &setup.found {
@@ -87,17 +87,17 @@ impl Trace {
         trace
     }
 
-    /// How many ranges were taken in.
+    /// The number of ranges that were accepted.
     pub fn taken(&self) -> usize {
         self.ranges.iter().filter(|(_, reception)| reception.taken).count()
     }
 
-    /// How many ranges were left out or refused.
+    /// The number of ranges that were left out or rejected.
     pub fn rejected(&self) -> usize {
         self.ranges.len() - self.taken()
     }
 
-    /// Adds to every epoch what a height that was found leaves uncertain.
+    /// Adds the uncertainty of a height that was found to every epoch.
     fn widen(&mut self, found: &FoundHeight) {
         for epoch in &mut self.epochs {
             epoch.widen(found);
@@ -105,12 +105,12 @@ impl Trace {
         }
     }
 
-    /// Times, µs, and where the tag was then, m, wherever it was found.
+    /// The times, µs, and positions, m, of all epochs with a position.
     pub fn known(&self) -> impl Iterator<Item = (i64, [f64; 3])> {
         self.epochs.iter().filter_map(|epoch| Some((epoch.time_us, epoch.position?)))
     }
 
-    /// Where it was at the last epoch, if that is known.
+    /// The position at the last epoch, if known.
     pub fn last(&self) -> Option<[f64; 3]> {
         self.epochs.last().and_then(|epoch| epoch.position)
     }
@@ -122,7 +122,7 @@ impl Trace {
         self.lost_s() > 0.1 * seconds.unwrap_or_default()
     }
 
-    /// How long the tag was not known after the first range, s.
+    /// The time without a position after the first range, s.
     pub fn lost_s(&self) -> f64 {
         let lost = self.epochs.windows(2).filter(|pair| pair[0].position.is_none());
         lost.map(|pair| (pair[1].time_us - pair[0].time_us) as f64 * 1e-6).fold(0.0, |a, b| a + b)
@@ -132,20 +132,20 @@ impl Trace {
 /// The ranges of the last seconds.
 #[derive(Debug, Default)]
 struct Recent {
-    /// The first of them.
+    /// The index of the first of them.
     first: usize,
     rejected: usize,
-    /// Beyond the last of them.
+    /// The index after the last of them.
     end: usize,
 }
 
 impl Recent {
-    /// As far back as is looked, µs.
+    /// The time for which ranges count as recent, µs.
     const SPAN_US: i64 = 10_000_000;
-    /// Of fewer ranges no share is taken.
+    /// The fewest ranges from which a share is taken.
     const FEWEST: usize = 20;
 
-    /// Whether more ranges are left out than taken in.
+    /// Whether more ranges are left out than accepted.
     fn are_rejected(&mut self, now_us: i64, ranges: &[(Range, Reception)]) -> bool {
         let is_rejected = |(_, reception): &(Range, Reception)| usize::from(!reception.taken);
         self.rejected += ranges[self.end..].iter().map(is_rejected).sum::<usize>();
@@ -162,7 +162,7 @@ impl Recent {
     }
 }
 
-/// Feeds a tracker.
+/// Feeds events to a tracker.
 pub fn follow(tracker: &mut dyn Follow, events: &[Event]) -> Trace {
     let start_us = events.iter().map(Event::time_us).min().unwrap_or_default();
     let mut trace = Trace::default();
@@ -194,7 +194,7 @@ pub fn follow(tracker: &mut dyn Follow, events: &[Event]) -> Trace {
     trace
 }
 
-/// Tracks a part of a recording by itself, with a tracker that is built for it.
+/// Tracks a single part of a recording, with a tracker that is built for it.
 ///
 /// # Errors
 /// Those of [`build`].
@@ -202,11 +202,11 @@ pub fn track(setup: &Setup, events: &[Event]) -> Result<Trace, Error> {
     Ok(Trace::by(build(setup)?.as_mut(), setup, events))
 }
 
-/// What is true of more than this share of the positions is told of all.
+/// The share of positions above which a property is reported for all.
 const OFTEN: f64 = 0.1;
 
-/// The share of positions of which something is true, if it is often: of those of a tag that moves, or of the last ones of
-/// one that was put down at as many points as there are traces.
+/// The share of positions with a property, if that is above `OFTEN`: of all positions of a tag that moves, or of the
+/// last ones of a tag that was put down at as many points as there are traces.
 fn often(traces: &[Trace], is_static: bool, is_so: impl Fn(&Epoch) -> bool) -> Option<f64> {
     let (mut count, mut all) = (0, 0);
     for trace in traces {
@@ -220,12 +220,12 @@ fn often(traces: &[Trace], is_static: bool, is_so: impl Fn(&Epoch) -> bool) -> O
     (share > OFTEN).then_some(share)
 }
 
-/// The share of positions at which the ranges allow two places, if it is often.
+/// The share of positions at which the ranges allow two places, if that is above a tenth.
 pub fn mirrored(traces: &[Trace], is_static: bool) -> Option<f64> {
     often(traces, is_static, |epoch| epoch.mirror.is_some())
 }
 
-/// Why positions cannot be relied upon: those of a tag that moves, or of one that was put down at as many points as there
+/// The reasons to doubt positions: those of a tag that moves, or of one that was put down at as many points as there
 /// are traces.
 pub fn doubts(traces: &[Trace], is_static: bool) -> Health {
     let taken: usize = traces.iter().map(Trace::taken).sum();

@@ -1,4 +1,4 @@
-//! The trackers behind one face, whatever they compute in.
+//! The trackers behind one interface, whatever number type they use.
 
 mod each_epoch;
 mod elsewhere;
@@ -25,62 +25,63 @@ use self::wheeled::Wheeled;
 use super::{Dimensions, Error, Event, Range, Setup, TrackerKind};
 use crate::{Number, ScalarKind};
 
-/// Something that follows a tag.
+/// A tracker of a tag.
 pub trait Follow: Debug {
-    /// Takes in what a sensor says, at a time in µs since the recording began. A sensor that the tracker has no
-    /// use for is taken in and changes nothing.
+    /// Processes an event, at a time in µs since the recording began. An event that the tracker has no use for is
+    /// accepted and changes nothing.
     fn take(&mut self, time_us: u64, event: &Event) -> Reception;
 
-    /// Where the tag is, m; its height is given back as it was set in two dimensions.
+    /// The position of the tag, m; in two dimensions, the height is the one that was set.
     fn position(&self) -> Option<[f64; 3]>;
 
-    /// Variance of x, covariance, and variance of y, m², of a tracker that knows them.
+    /// Variance of x, covariance, and variance of y, m², if the tracker knows them.
     fn spread(&self) -> Option<[f64; 3]> {
         None
     }
 
-    /// Variance of z, m², of a tracker that estimates it.
+    /// Variance of z, m², if the tracker estimates it.
     fn height_variance(&self) -> Option<f64> {
         None
     }
 
-    /// From its position to the other place that the ranges allow, m, of a tracker that knows; none if they allow one only.
+    /// The vector from the position to the other place that the ranges allow, m, if the tracker knows it; `None` if
+    /// they allow only one.
     fn mirror(&self) -> Option<[f64; 3]> {
         None
     }
 
-    /// What speaks against its position now, of a tracker that knows.
+    /// The doubts about the current position, if the tracker knows them.
     fn health(&self) -> kestirim_health::Health {
         kestirim_health::Health::GOOD
     }
 
-    /// All that it needs to go on elsewhere, to the bit; none if it cannot be stored.
+    /// The snapshot of everything that it needs to continue elsewhere, to the bit; `None` if it cannot be stored.
     fn snapshot(&self) -> Option<Vec<u8>> {
         None
     }
 
-    /// Goes on as the one that was stored; none, and as before, if that was no such tracker.
+    /// Continues from a snapshot; `None`, and no change, if that is not one of such a tracker.
     fn restore(&mut self, _snapshot: &[u8]) -> Option<()> {
         None
     }
 }
 
-/// What became of a measurement.
+/// The outcome of a measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reception {
-    /// Whether it was taken in.
+    /// Whether it was accepted.
     pub taken: bool,
-    /// The innovation of a range (m), its variance and NIS, from a tracker that weighs ranges one by one.
+    /// The innovation of a range (m), its variance and NIS, if the tracker weighs ranges one by one.
     pub innovation: Option<Innovation<f64>>,
 }
 
 impl Reception {
-    /// Of a tracker that weighs nothing.
+    /// The outcome for a tracker that does not weigh measurements.
     pub const fn unweighed(taken: bool) -> Self {
         Self { taken, innovation: None }
     }
 
-    /// Of a range that was weighed by itself, or refused.
+    /// The outcome of a range that was weighed individually, or rejected.
     fn of_range<T: Scalar, E>(answer: &Result<Report<T>, E>) -> Self {
         let Ok(report) = answer else { return Self::unweighed(false) };
         let innovation = report.innovation.map(|seen| Innovation {
@@ -97,15 +98,15 @@ impl Reception {
     }
 }
 
-/// A range as a tracker takes it.
+/// Converts a range to the tracker's type.
 fn sample<T: Scalar>(time_us: u64, range: &Range) -> RangeSample<T> {
     RangeSample { time_us, anchor: range.anchor, range: T::from_f64(range.metres) }
 }
 
-/// Builds what was chosen.
+/// Builds the chosen tracker.
 ///
 /// # Errors
-/// [`Error`] if these anchors or numbers will not do.
+/// [`Error`] if the anchors or numbers are unsuitable.
 pub fn build(setup: &Setup) -> Result<Box<dyn Follow>, Error> {
     let Some(origin) = elsewhere::origin(setup) else { return build_here(setup) };
     let tracker = build_here(&elsewhere::about(setup, origin))?;
@@ -158,10 +159,10 @@ fn in_dimensions<T: Number, const D: usize, const N: usize, const WITH_BIAS: usi
     })
 }
 
-/// The default tracker in the plane and double precision, with its constants changed: to see what they do.
+/// Builds the default tracker in the plane and double precision with changed constants, to study their effect.
 ///
 /// # Errors
-/// As [`build`].
+/// Those of [`build`].
 pub fn build_changed(
     setup: &Setup,
     change: impl FnOnce(&mut Config<f64>),
@@ -176,10 +177,10 @@ pub fn build_changed(
     Ok(Box::new(Recursive::<f64, 2, 5>::new(setup, config)?))
 }
 
-/// The paper's filter in the plane, begun as one likes.
+/// Builds the paper's filter in the plane, with a given start.
 ///
 /// # Errors
-/// As [`build`].
+/// Those of [`build`].
 pub fn build_published(setup: &Setup, beginning: Beginning) -> Result<Box<dyn Follow>, Error> {
     match setup.scalar {
         ScalarKind::F32 => Published::<f32, 2, 4>::boxed(setup, beginning),
@@ -188,19 +189,19 @@ pub fn build_published(setup: &Setup, beginning: Beginning) -> Result<Box<dyn Fo
     }
 }
 
-/// A position in two or three dimensions, m.
+/// Converts a position in two or three dimensions, m.
 fn place<T: Scalar, const D: usize>(position: &SVector<T, D>, height_m: f64) -> Option<[f64; 3]> {
     let coordinate = |axis| position.get(axis).map(|coordinate: &T| coordinate.to_f64());
     Some([coordinate(0)?, coordinate(1)?, coordinate(2).unwrap_or(height_m)])
 }
 
-/// Variance of x, covariance and variance of y: of the first two states of any filter.
+/// Variance of x, covariance and variance of y: those of the first two states of any filter.
 fn of_the_plane<T: Scalar, const N: usize>(covariance: &Covariance<T, N>) -> Option<[f64; 3]> {
     let of = |i, j| covariance.get(i, j).map(T::to_f64);
     Some([of(0, 0)?, of(0, 1)?, of(1, 1)?])
 }
 
-/// The same with this variance of each axis, which the anchors' constant errors add.
+/// Variance of x, covariance and variance of y, plus the variance that the anchors' constant errors add to each axis.
 fn with_bias<T: Scalar, const N: usize>(
     covariance: &Covariance<T, N>,
     bias: f64,
@@ -209,7 +210,7 @@ fn with_bias<T: Scalar, const N: usize>(
     Some([xx + bias, xy, yy + bias])
 }
 
-/// Variance of each axis that the anchors' constant errors add, m²: in no direction more than in another.
+/// The variance that the anchors' constant errors add to each axis, m²: equal in all directions.
 fn bias_variance<T: Scalar>(health: &Health<T>, dimensions: usize) -> f64 {
     health.bias_sigma.to_f64().powi(2) / dimensions as f64
 }

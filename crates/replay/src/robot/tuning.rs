@@ -4,25 +4,26 @@ use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::Huber;
 use kestirim_uwb_tracker::Config;
 
-/// Constants of a tracker that can be other than its own.
+/// The constants of a tracker that can be changed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tuning {
-    /// Standard deviation of a range to begin with, m.
+    /// Initial standard deviation of a range, m.
     pub range_sigma_m: f64,
     /// Power spectral density of the acceleration, m²/s³.
     pub acceleration_density: f64,
-    /// Beyond how many standard deviations a range is left out; none leaves out none.
+    /// The number of standard deviations beyond which a range is rejected; `None` rejects none.
     pub gate_sigmas: Option<f64>,
-    /// Beyond how many a range that is too long, or too short, is weakened; none weakens none.
+    /// The numbers of standard deviations beyond which a range that is too long, or too short, has less weight; `None`
+    /// for full weight always.
     pub huber_sigmas: Option<[f64; 2]>,
-    /// Time constant with which a velocity decays, s; none decays none.
+    /// Time constant with which a velocity decays, s; `None` for no decay.
     pub decay_time_s: Option<f64>,
     /// Whether each anchor's variance is learnt.
     pub learns: bool,
 }
 
 impl Default for Tuning {
-    /// The default tracker's own.
+    /// The constants of the default tracker.
     fn default() -> Self {
         let config = Config::<f64>::uncalibrated(0.0);
         Self {
@@ -37,7 +38,7 @@ impl Default for Tuning {
 }
 
 impl Tuning {
-    /// The noises, which every Kalman filter has.
+    /// Sets the noises, which every Kalman filter has.
     pub fn of_any<T: Scalar>(&self, config: Config<T>) -> Config<T> {
         Config {
             range_sigma: T::from_f64(self.range_sigma_m),
@@ -46,7 +47,7 @@ impl Tuning {
         }
     }
 
-    /// And what makes a filter robust.
+    /// Sets the noises and the constants that make a filter robust.
     pub fn of_the_robust<T: Scalar>(&self, config: Config<T>) -> Config<T> {
         let huber = self.huber_sigmas.map(|sigmas| sigmas.map(T::from_f64));
         Config {

@@ -1,4 +1,4 @@
-//! Filters with room for all that a model may say.
+//! Filters with room for everything a model can describe.
 
 use kestirim_health::Health;
 use kestirim_kalman::Innovation;
@@ -12,19 +12,19 @@ use nalgebra::SVector;
 use super::extended::{Parts, Unknown};
 use super::{Model, Options};
 
-/// States of the filter, those of them that move the four, and outputs.
+/// The number of states of the filter; `MOVING` is the number of those that move the four states of flight.
 const STATES: usize = 16;
 pub(super) const MOVING: usize = 10;
-/// Outputs that a model may have, if it says more than A, B and C.
+/// The largest number of outputs of a model that describes more than A, B and C.
 pub const MOST_EXTENDED_OUTPUTS: usize = 8;
-/// Models that a grid may have.
+/// The largest number of models in a grid.
 pub(super) const MOST_MODELS: usize = 8;
-/// Intervals of a log of which the steps are kept, of one model …
+/// The number of different intervals of a log for which one model keeps its discretised steps.
 const KEPT: usize = 32;
-/// … and of a grid, where each is as many.
+/// The number of different intervals of a log for which each model of a grid keeps its discretised steps.
 const KEPT_OF_GRID: usize = 8;
 
-/// V among the states.
+/// The index of the airspeed V among the states.
 pub(super) const AIRSPEED: usize = 2;
 
 type Built = AugmentedModel<STATES, MOVING, MOST_EXTENDED_OUTPUTS>;
@@ -32,21 +32,22 @@ type Local = LocalModel<STATES, MOVING, MOST_EXTENDED_OUTPUTS>;
 type One<T> = AugmentedFlight<T, STATES, MOVING, MOST_EXTENDED_OUTPUTS, KEPT>;
 type Grid<T> = ScheduledFlight<T, STATES, MOVING, MOST_EXTENDED_OUTPUTS, MOST_MODELS, KEPT_OF_GRID>;
 
-/// A filter with room for all that a model may say.
+/// A filter with room for everything a model can describe.
 #[derive(Debug, Clone)]
 pub(super) enum Augmented<T: Scalar> {
-    /// By one model.
+    /// A filter with one model.
     One(Box<One<T>>),
-    /// By a grid of them.
+    /// A filter with a grid of models.
     Grid(Box<Grid<T>>),
 }
 
 impl<T: Scalar> Augmented<T> {
-    /// A filter of these outputs of a model, measured every `usual` seconds, with gusts of so many times what the model says.
+    /// A filter for the given outputs of a model, measured every `usual` seconds, with gusts `gust` times as strong as
+    /// the model states.
     ///
     /// # Errors
-    /// [`uav::Error::NoRoom`] for a model of discrete time, or one that says no more than A, B and C; and whatever else keeps
-    /// the filter from being built.
+    /// [`uav::Error::NoRoom`] for a discrete-time model, or one that describes no more than A, B and C; and whatever
+    /// else keeps the filter from being built.
     pub(super) fn new(
         model: &Model,
         outputs: &[usize],
@@ -67,12 +68,12 @@ impl<T: Scalar> Augmented<T> {
         if locals.len() > MOST_MODELS {
             return Err(uav::Error::NoRoom);
         }
-        // The last one fills what is left.
+        // The last model fills the unused places.
         let all = std::array::from_fn(|place| *locals.get(place).unwrap_or(last));
         Ok(Self::Grid(Box::new(ScheduledFlight::new(&all, &inputs, usual)?)))
     }
 
-    /// Says how long an interval usually is, s.
+    /// Sets the usual length of an interval, s.
     pub(super) fn set_usual(&mut self, usual: f64) {
         match self {
             Self::One(flight) => flight.set_usual(usual),
@@ -80,10 +81,10 @@ impl<T: Scalar> Augmented<T> {
         }
     }
 
-    /// Takes in a sample: [`AugmentedFlight::take`], [`ScheduledFlight::take`].
+    /// Processes a sample: [`AugmentedFlight::take`], [`ScheduledFlight::take`].
     ///
     /// # Errors
-    /// As these.
+    /// Those of [`AugmentedFlight::take`] and [`ScheduledFlight::take`].
     pub(super) fn take(
         &mut self,
         sample: &Sample<MOST_EXTENDED_OUTPUTS>,
@@ -94,7 +95,7 @@ impl<T: Scalar> Augmented<T> {
         }
     }
 
-    /// The filter, with the estimate and its uncertainty at the time of the last sample.
+    /// The filter, which holds the estimate and its uncertainty at the time of the last sample.
     pub(super) fn filter(&self) -> &AugmentedFilter<T, STATES, MOVING, MOST_EXTENDED_OUTPUTS> {
         match self {
             Self::One(flight) => flight.filter(),
@@ -102,7 +103,7 @@ impl<T: Scalar> Augmented<T> {
         }
     }
 
-    /// How many times each output was left out, because it contradicted the estimate.
+    /// The number of times each output was rejected because it contradicted the estimate.
     pub(super) fn rejected(&self) -> &[u32; MOST_EXTENDED_OUTPUTS] {
         match self {
             Self::One(flight) => flight.rejected(),
@@ -119,10 +120,10 @@ impl<T: Scalar> Augmented<T> {
     }
 }
 
-/// The model of a filter.
+/// The augmented model of a filter.
 fn built(model: &Model, parts: &Parts) -> Result<Built, uav::Error> {
     let Dynamics::Continuous(plant) = &model.dynamics else { return Err(uav::Error::NoRoom) };
-    // Outputs that are never measured fill the rest: of the airspeed, so that fixed point holds their variance.
+    // The remaining outputs are never measured: they are set to the airspeed, so that fixed point holds their variance.
     let mut outputs = [Output::state(AIRSPEED, 1.0); MOST_EXTENDED_OUTPUTS];
     for (place, output) in outputs.iter_mut().zip(&parts.outputs) {
         *place = *output;
@@ -140,7 +141,7 @@ fn built(model: &Model, parts: &Parts) -> Result<Built, uav::Error> {
     Ok(built)
 }
 
-/// A model of a grid, beside the one whose steady flight is the origin.
+/// A model of a grid, relative to the model whose steady flight is the origin.
 fn local(
     model: &Model,
     parts: &Parts,

@@ -1,4 +1,4 @@
-//! What the log of a flight shows before an estimator follows it.
+//! Checks of the log of a flight before an estimator follows it.
 
 use kestirim_health::Reason;
 
@@ -6,23 +6,25 @@ use super::{Log, Model, STATE_COLUMNS, Sample};
 use crate::Finding;
 use crate::metrics::median;
 
-/// A measurement that jumps by so many usual changes and back is a spike.
+/// The size of a spike, in usual changes: a measurement that jumps by more than this and back is one.
 const SPIKE: f64 = 30.0;
-/// Share of spikes from which on they are told as a fault.
+/// The share of spikes above which they are reported as a fault.
 const MANY: f64 = 0.002;
-/// A jump that stays is a step of the sensor, if it is so large, what comes before and after it for so many samples lies apart by a part
-/// of it, and nothing there jumps as far.
+/// The number of samples before and after a jump that decide whether it is a step of the sensor. A step is large, the
+/// medians before and after it differ by at least the share `STAYS` of it, and nothing else there jumps half as far.
 const AROUND: usize = 10;
 const STAYS: f64 = 0.7;
-/// Accelerations do step, with thrust and elevator.
+/// Outputs that may step: accelerations do, with thrust and elevator.
 const ACCELERATIONS: [&str; 3] = ["ax", "ay", "az"];
-/// So does a pitch rate of few samples a second, while an input goes by such a part of all that it ever does.
+/// The pitch rate, which may step at low sample rates while an input changes by more than the share `STEERED` of its
+/// whole range.
 const RATE: &str = "q";
 const STEERED: f64 = 0.05;
-/// So many samples in a row that stay the same to the last digit while others change are stuck.
+/// The number of samples in a row that stay the same to the last digit while others change, from which on a sensor is
+/// stuck.
 const STUCK: usize = 50;
 
-/// What the log shows. Outputs are named by the model, or without one are the states.
+/// The findings about a log. Outputs have the names of the model, or without one those of the states.
 pub fn check(log: &Log, model: Option<&Model>) -> Vec<Finding> {
     let count = log.samples.len();
     let mut findings = vec![Finding::note(
@@ -74,14 +76,14 @@ fn spikes(name: &str, values: &[f64], limit: f64) -> Option<Finding> {
     })
 }
 
-/// Of those that are any: of a sensor that is stuck for half of the flight the usual change would be none, and any of the other
-/// half a spike.
+/// The median of the changes that are not zero: if a sensor is stuck for half of the flight, the median of all changes
+/// would be zero, and any change in the other half a spike.
 fn usual_change(values: &[f64]) -> f64 {
     let changes = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     median(&changes.filter(|change| *change > 0.0).collect::<Vec<_>>())
 }
 
-/// That an output is another from one sample to the next, and stays so.
+/// A finding if an output jumps from one sample to the next and stays there.
 fn step(name: &str, log: &Log, column: usize, limit: f64) -> Option<Finding> {
     if ACCELERATIONS.contains(&name) {
         return None;
@@ -121,7 +123,7 @@ fn step(name: &str, log: &Log, column: usize, limit: f64) -> Option<Finding> {
     })
 }
 
-/// By how much each input differs at most in these samples.
+/// The range of each input in these samples.
 fn spans(samples: &[Sample]) -> [f64; 2] {
     std::array::from_fn(|input| {
         let values = samples.iter().map(|sample| sample.input[input]);
@@ -153,7 +155,7 @@ fn stuck(name: &str, values: &[f64]) -> Option<Finding> {
 mod tests {
     use super::*;
 
-    /// What is told of an airspeed that swings, with something added from the 100th of 200 samples on, which come at these times.
+    /// Whether a step is reported for an oscillating airspeed of 200 samples at the given times, with something added.
     fn told(added: impl Fn(usize) -> f64, time_us: impl Fn(i64) -> i64) -> bool {
         let sample = |k: usize| Sample {
             t_us: time_us(k as i64),
@@ -191,7 +193,7 @@ mod tests {
         assert!(!told(|_| 0.0, regular));
         assert!(told(|k| 5.0 * from(k).min(1.0), regular));
         assert!(told(|k| -5.0 * from(k).min(1.0), regular));
-        // Within a fifth of a second, once away and back, and where samples are missing.
+        // Within a fifth of a second; once away and back; and where samples are missing.
         assert!(!told(|k| 0.5 * from(k).min(10.0), regular));
         assert!(!told(|k| if k == 100 { 5.0 } else { 0.0 }, regular));
         assert!(!told(

@@ -1,25 +1,26 @@
-//! Whether the data contradict the model: what innovations would be if it were right, they are not.
+//! Contradictions between data and model: innovations that are not what they would be if the model were right.
 
 use super::Followed;
 use crate::clipped::Clipped;
 use kestirim_health::{Health, Reason};
 
-/// Innovations of an output from which on it is judged.
+/// The fewest innovations of an output from which it is judged.
 const FEWEST: usize = 200;
-/// An outlier counts for no more than this, in standard deviations.
+/// The limit to which outliers are clipped, in standard deviations.
 const LARGEST: f64 = 3.2;
-/// Mean square, in variances, beyond which innovations are larger than noise explains: 1 of a right model, and noise of one
-/// and a half times what was said is no reason to doubt.
+/// The mean square, in variances, beyond which innovations are larger than noise explains. A right model has 1, and
+/// noise of one and a half times what was stated is no reason to doubt.
 const SQUARE: f64 = 2.25;
-/// Mean product with the one before, in variances, beyond which they follow each other: 0 of a right model, and less than
-/// this of one whose process noise is too large or too small by a factor of ten.
+/// The mean product of successive innovations, in variances, beyond which they are correlated. A right model has 0, and
+/// one whose process noise is too large or too small by a factor of ten has less than this.
 const PRODUCT: f64 = 0.4;
-/// Mean square of what is estimated beside the states, in what the model says of it, …
+/// The mean square of the additional estimated quantities, relative to the model's variances, beyond which the model is
+/// doubted.
 const BESIDE: f64 = 2.25;
-/// … from so many on.
+/// The fewest additional estimated quantities from which their mean square is judged.
 const FEWEST_BESIDE: usize = 3;
 
-/// Why a line is doubted.
+/// The reasons for which single lines are doubted, with their sentences.
 const DOUBTED: [(Reason, &str); 3] = [
     (
         Reason::Innovations,
@@ -35,40 +36,41 @@ const DOUBTED: [(Reason, &str); 3] = [
     ),
 ];
 
-/// Why model and measurements do not belong together.
+/// Why model and measurements contradict each other.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Contradiction {
-    /// The innovations of one of the log's outputs are so many times as large as model and noise explain.
+    /// The innovations of one of the log's outputs are larger than model and noise explain.
     Large {
-        /// Which of the log's outputs.
+        /// The index among the log's outputs.
         output: usize,
-        /// Root mean square, in standard deviations.
+        /// Their root mean square, in standard deviations.
         size: f64,
     },
-    /// They follow each other: what the output shows is, for seconds, other than what the model says.
+    /// Successive innovations of an output are correlated: for seconds, the output shows something other than what the
+    /// model says.
     Coloured {
-        /// Which of the log's outputs.
+        /// The index among the log's outputs.
         output: usize,
-        /// How much of their variance each shares with the next one.
+        /// The share of their variance that each has in common with the next one.
         shared: f64,
     },
-    /// What was estimated beside the states is so many times what the model says of it.
+    /// The quantities estimated in addition to the states are larger than the model says.
     Beside {
-        /// Root mean square, in the model's standard deviations.
+        /// Their root mean square, in the model's standard deviations.
         size: f64,
     },
-    /// The estimated airspeed is beyond those of a grid of models, by more than half of how far its last two are apart; or for a quarter
-    /// of the flight more than 12 % from that of a single model.
+    /// The estimated airspeed is beyond those of a grid of models, by more than half of the distance between its last
+    /// two; or, for a quarter of the flight, more than 12 % from that of a single model.
     Beyond {
-        /// The furthest, m/s.
+        /// The furthest airspeed, m/s.
         airspeed: f64,
-        /// The end of the grid, or where the single model was made, m/s.
+        /// The airspeed at the end of the grid, or of the single model, m/s.
         end: f64,
     },
 }
 
 impl Contradiction {
-    /// In a sentence; outputs have names.
+    /// The contradiction in a sentence, with the names of the outputs.
     pub fn sentence<'a>(&self, mut names: impl Iterator<Item = &'a str>) -> String {
         let mut name = |output: usize| names.nth(output).unwrap_or_default();
         match *self {
@@ -95,7 +97,7 @@ impl Contradiction {
 }
 
 impl Followed {
-    /// What speaks against the model, the worst of each output.
+    /// The contradictions to the model, the worst of each output.
     pub fn contradictions(&self) -> Vec<Contradiction> {
         let outputs = self.normalised.iter().enumerate();
         let mut all: Vec<_> = outputs.filter_map(|(output, it)| of_output(output, it)).collect();
@@ -111,13 +113,13 @@ impl Followed {
 }
 
 impl Followed {
-    /// Health of each line: its own, and what contradicts the model in all of them.
+    /// The health of each line: its own, with what contradicts the model as a whole.
     pub fn lines(&self) -> impl Iterator<Item = Health> {
         let is_doubted = !self.contradictions().is_empty();
         self.healths.iter().map(move |it| it.with(Reason::Innovations, is_doubted))
     }
 
-    /// When and why single lines are to be doubted: a sentence each.
+    /// When and why single lines are doubted: a sentence for each reason.
     pub fn doubted_lines(&self) -> impl Iterator<Item = (Reason, String)> {
         DOUBTED.into_iter().filter_map(|(reason, sentence)| {
             let place = self.healths.iter().position(|health| health.has(reason))?;
@@ -148,7 +150,7 @@ fn of_output(output: usize, innovations: &[f64]) -> Option<Contradiction> {
 mod tests {
     use super::*;
 
-    /// Innovations of noise that looks random, with something added.
+    /// The contradictions found for innovations of noise that looks random, with something added.
     fn told(added: impl Fn(usize) -> f64) -> Vec<Contradiction> {
         let noise = |at: usize| 1.7 * ((at * at) as f64).sin();
         let normalised = vec![(0..2000).map(|at| noise(at) + added(at)).collect()];

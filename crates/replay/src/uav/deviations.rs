@@ -1,4 +1,4 @@
-//! A logged flight in deviations from its model's steady one.
+//! A logged flight as deviations from its model's steady flight.
 
 use kestirim_health::Reason;
 use nalgebra::SVector;
@@ -8,26 +8,26 @@ use super::extended;
 use super::{Error, EstimatorKind, Log, Model, Options, Truth};
 use crate::ScalarKind;
 
-/// A flight in deviations from its model's steady one.
+/// A flight as deviations from its model's steady flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Deviations {
-    /// The aircraft.
+    /// The model of the aircraft.
     pub model: Model,
     /// The log, in deviations.
     pub log: Log,
-    /// What was really flown, as in its file.
+    /// The true states, as in their file.
     pub truth: Option<Truth>,
-    /// State and input that were taken from the log.
+    /// The state and input that were subtracted from the log.
     origin: ([f64; 4], [f64; 2]),
-    /// Whether it was.
+    /// Whether the log had absolute values.
     absolute: bool,
-    /// The usual airspeed of the log, m/s, and that of the model's steady flight, if the log looks absolute and is not said
-    /// to be.
+    /// The median airspeed of the log and that of the model's steady flight, m/s, if the log looks absolute but is not
+    /// declared to be.
     pub looks_absolute: Option<[f64; 2]>,
 }
 
 impl Deviations {
-    /// From what was logged; with `absolute` values the model's trim is taken from them.
+    /// Deviations of a log; if its values are `absolute`, the model's trim is subtracted from them.
     ///
     /// # Errors
     /// [`Error::NoTrim`] if values are `absolute` and the model has none; [`Error::GridOfDeviations`] if they are not, and it is
@@ -47,18 +47,18 @@ impl Deviations {
         Ok(Self { model, log, truth, origin, absolute, looks_absolute })
     }
 
-    /// From a simulated flight, which is in deviations.
+    /// Deviations of a simulated flight, which consists of deviations already.
     pub fn simulated(model: Model, log: Log, truth: Truth) -> Self {
         let (truth, origin) = (Some(truth), ([0.0; 4], [0.0; 2]));
         Self { model, log, truth, origin, absolute: false, looks_absolute: None }
     }
 
-    /// Of the outputs that the log has.
+    /// The names of the outputs in the log.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.log.outputs.iter().map(|&output| self.model.outputs[output].0.as_str())
     }
 
-    /// By an estimator.
+    /// Runs an estimator along the flight.
     ///
     /// # Errors
     /// [`Error::Estimator`] if it cannot be built, [`Error::Sample`] if it refuses a sample, [`Error::BeyondRange`] if a
@@ -85,8 +85,8 @@ impl Deviations {
             EstimatorKind::Luenberger => {
                 let (poles, scalar) = (options.poles, options.scalar);
                 let mut followed = estimators::observer(&self.model, &self.log, poles, scalar)?;
-                // An observer does not know how large innovations may be. Whether model and measurements agree does
-                // not depend on it: the filter beside it tells.
+                // An observer does not know how large innovations may be. Whether model and measurements agree does not
+                // depend on it: the filter beside it tells.
                 if let Ok(judge) = kalman(ScalarKind::F64) {
                     followed.normalised.clone_from(&judge.normalised);
                     for (health, judged) in followed.healths.iter_mut().zip(&judge.healths) {
@@ -100,7 +100,8 @@ impl Deviations {
         }
     }
 
-    /// By a Kalman filter in doubles, where gusts (of a model that has any) are as strong as another of its flights found them.
+    /// Runs a Kalman filter in doubles along the flight, with gusts (of a model that has any) as strong as another
+    /// flight of the model found them.
     ///
     /// # Errors
     /// [`Error::Estimator`] if it cannot be built, [`Error::Sample`] if it refuses a sample.
@@ -118,7 +119,7 @@ impl Deviations {
         extended::follow(&self.model, extended, &self.log, options, scalar, gust)
     }
 
-    /// Its first lines, no more than so many.
+    /// The first lines of the flight, at most `lines`.
     pub fn beginning(&self, lines: usize) -> Self {
         let samples: Vec<_> = self.log.samples.iter().take(lines).cloned().collect();
         let end = samples.last().map_or(i64::MIN, |sample| sample.t_us);
@@ -129,19 +130,19 @@ impl Deviations {
         Self { model: self.model.clone(), log, truth, ..*self }
     }
 
-    /// An estimate as the log has its values.
+    /// An estimate in the values of the log.
     pub fn absolute(&self, estimate: &Estimate) -> SVector<f64, 4> {
         estimate.state + SVector::from(self.origin.0)
     }
 
-    /// Inputs of the log as they were before the trim was taken.
+    /// The inputs of the log as they were before the trim was subtracted.
     pub fn inputs(&self) -> impl Iterator<Item = (i64, [f64; 2])> {
         let steady = self.origin.1;
         let absolute = move |input: [f64; 2]| std::array::from_fn(|i| input[i] + steady[i]);
         self.log.samples.iter().map(move |sample| (sample.t_us, absolute(sample.input)))
     }
 
-    /// Rows of the log as they were before the trim was taken: of each output, or nothing.
+    /// The measurements of the log as they were before the trim was subtracted: the value of each output, if measured.
     pub fn measured(&self) -> impl Iterator<Item = (i64, Vec<Option<f64>>)> {
         let steady: Vec<f64> = self.log.outputs.iter().map(|&o| self.steady(o)).collect();
         self.log.samples.iter().map(move |sample| {
@@ -154,7 +155,7 @@ impl Deviations {
         self.model.shown(output, self.absolute, &self.origin.0)
     }
 
-    /// Errors at times that log and truth share: estimated less true, of the states that are known.
+    /// The errors at times that log and truth share: estimated minus true, for the states that are known.
     pub fn errors(&self, estimates: &[Estimate]) -> Vec<(i64, [Option<f64>; 4])> {
         let Some(truth) = &self.truth else { return Vec::new() };
         let error = |estimate: &Estimate| {
@@ -167,7 +168,7 @@ impl Deviations {
     }
 }
 
-/// Whether airspeeds are nearer to the steady one than to nothing.
+/// The median airspeed and the steady one, if the median is nearer to the steady one than to zero.
 fn looks_absolute(log: &Log, model: &Model, airspeed: f64) -> Option<[f64; 2]> {
     let column = log.outputs.iter().position(|&output| model.outputs[output].0 == "V")?;
     let mut values: Vec<f64> =

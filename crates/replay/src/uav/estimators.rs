@@ -11,39 +11,40 @@ use super::{
 };
 use crate::ScalarKind;
 
-/// Intervals of a log of which the steps are kept.
+/// The number of different intervals of a log for which discretised steps are kept.
 pub(super) const KEPT: usize = 512;
 
-/// A Kalman filter with room for as many outputs as a model may have.
+/// A Kalman filter with room for the largest number of outputs of a model.
 pub(super) type Filter<T> = FlightFilter<T, MOST_OUTPUTS, KEPT>;
 
-/// An estimate, after its line was taken in.
+/// An estimate after a line of the log was processed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
-    /// µs.
+    /// Time, µs.
     pub t_us: i64,
-    /// Deviations α, q, V, θ.
+    /// The state as deviations of α, q, V, θ.
     pub state: SVector<f64, 4>,
-    /// Their standard deviations, of a filter that knows them.
+    /// The standard deviations of the state, if the estimator knows them.
     pub sigma: Option<SVector<f64, 4>>,
 }
 
-/// Of a flight: estimates, and what the measurements said beyond what was expected of them.
+/// The result of an estimator along a flight: estimates and innovations.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Followed {
-    /// One a line.
+    /// The estimates, one per line.
     pub estimates: Vec<Estimate>,
-    /// Of each of the log's outputs: one a line, or nothing where it was not measured, or nothing expected yet.
+    /// The innovations of each of the log's outputs, one per line; `None` where it was not measured, or nothing was
+    /// expected yet.
     pub innovations: Vec<Vec<Option<f64>>>,
-    /// How many times each of them contradicted the estimate and was left out.
+    /// The number of times each output was rejected because it contradicted the estimate.
     pub rejected: Vec<u32>,
-    /// Of each line: how far its estimate can be relied upon.
+    /// How far the estimate of each line can be relied upon.
     pub healths: Vec<Health>,
-    /// Of each of the log's outputs: innovations in standard deviations, of a filter that knows them.
+    /// The innovations of each of the log's outputs in standard deviations, if the estimator knows them.
     pub normalised: Vec<Vec<f64>>,
-    /// What was estimated beside the four states.
+    /// The quantities that were estimated in addition to the four states.
     pub beside: Vec<Beside>,
-    /// Standard deviations (m/s) of the gusts along and across that the innovations support most.
+    /// Standard deviations (m/s) of the gusts along and across that the innovations support best.
     pub gust: Option<[f64; 2]>,
     /// The estimated airspeed (m/s) that is furthest beyond those of a grid of models, and the end of the grid; or furthest from that of
     /// a single model, and that one: if it is as far as [`Contradiction::Beyond`](super::Contradiction::Beyond) says.
@@ -57,7 +58,7 @@ impl Followed {
         Self { innovations, normalised, rejected: vec![0; count], ..Self::default() }
     }
 
-    /// Keeps innovations in standard deviations.
+    /// Adds innovations in standard deviations.
     pub(super) fn judge(&mut self, innovations: &[Option<Innovation<f64>>]) {
         for (all, innovation) in self.normalised.iter_mut().zip(innovations) {
             all.extend(innovation.map(|it| it.nis.sqrt().copysign(it.innovation)));
@@ -82,18 +83,18 @@ impl Followed {
     }
 }
 
-/// Standard deviations of white noise: of δe, δt, and of each of the log's outputs.
+/// Assumed standard deviations of white noise on δe, δt and each of the log's outputs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assumed {
-    /// On the inputs, a sample.
+    /// Noise of the inputs, per sample.
     pub inputs: [f64; 2],
-    /// On the outputs.
+    /// Noise of the outputs.
     pub outputs: Vec<f64>,
 }
 
 impl Assumed {
-    /// As set, and otherwise as the model says, and otherwise of usual sensors. What a file's C mixes of the states is as noisy as the mixture of their
-    /// sensors.
+    /// The noise as set by the options, otherwise as the model says, otherwise that of usual sensors. What a file's C
+    /// mixes of the states is as noisy as the mixture of their sensors.
     pub fn of(model: &Model, outputs: &[usize], options: &Options) -> Self {
         let extended = model.extended.as_deref();
         let said = |output: usize| Some(extended?.sigmas.as_ref()?[output]);
@@ -114,17 +115,17 @@ impl Assumed {
     }
 }
 
-/// A Kalman filter of these outputs of a model, measured every `usual` seconds.
+/// A Kalman filter for the given outputs of a model, measured every `usual` seconds.
 ///
 /// # Errors
-/// Why there is none.
+/// Why it cannot be built.
 pub(super) fn filter<T: Scalar>(
     model: &Model,
     outputs: &[usize],
     assumed: &Assumed,
     usual: f64,
 ) -> Result<Box<Filter<T>>, uav::Error> {
-    // Outputs that are never measured fill the rest.
+    // The remaining outputs are never measured.
     let sigma = |output: usize| assumed.outputs.get(output).copied().unwrap_or(1.0);
     let noise = uav::Noise {
         inputs: assumed.inputs.into(),
@@ -133,7 +134,7 @@ pub(super) fn filter<T: Scalar>(
     Ok(Box::new(Filter::new(&model.dynamics, &rows(model, outputs), &noise, usual)?))
 }
 
-/// By a Kalman filter whose estimate the first lines decide.
+/// Runs a Kalman filter, whose initial estimate the first lines determine.
 ///
 /// # Errors
 /// [`Error::Estimator`] or [`Error::Sample`].
@@ -166,7 +167,7 @@ fn kalman_in<T: Scalar>(model: &Model, log: &Log, assumed: &Assumed) -> Result<F
     Ok(followed)
 }
 
-/// By an observer with these poles, 1/s, that starts at what the first line measures.
+/// Runs an observer with these poles, 1/s, which starts at what the first line measures.
 ///
 /// # Errors
 /// [`Error::Estimator`] or [`Error::Sample`].
@@ -216,13 +217,13 @@ fn observer_of<T: Scalar, const P: usize>(
     Ok(followed)
 }
 
-/// Rows of C that are measured; zero beyond.
+/// The rows of C that are measured; the remaining rows are zero.
 pub fn rows<const P: usize>(model: &Model, outputs: &[usize]) -> SMatrix<f64, P, 4> {
     let row = |place: usize| outputs.get(place).map_or([0.0; 4], |&output| model.outputs[output].1);
     SMatrix::from_fn(|place, state| row(place)[state])
 }
 
-/// A line with room for P outputs.
+/// A line of the log with room for P outputs.
 pub(super) fn sized<const P: usize>(sample: &Sample) -> uav::Sample<P> {
     uav::Sample {
         time_us: sample.t_us,

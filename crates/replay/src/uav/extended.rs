@@ -1,4 +1,4 @@
-//! What a model may say beyond A, B and C, and the filter that takes it in.
+//! Extended models, which describe more than A, B and C, and the filter for them.
 
 use kestirim_kalman::Innovation;
 use kestirim_scalar::{Q16_16, Scalar};
@@ -10,57 +10,58 @@ use super::estimators::{Assumed, Estimate, Followed, sized};
 use super::{Error, Log, Model, Options};
 use crate::ScalarKind;
 
-/// Outputs of these names refer to the ground.
+/// The names of outputs that refer to the ground.
 const GROUND: [&str; 2] = ["V_ground", "climb"];
-/// Gusts are tried at these times what the model says; the innovations decide.
+/// The strengths of gusts that are tried, relative to the model's; the innovations decide.
 const GUSTS: [f64; 6] = [0.0, 0.125, 0.25, 0.5, 1.0, 2.0];
-/// An outlier's part in what the innovations support.
+/// The limit of an outlier's normalised innovation squared in the log-likelihood.
 const MOST_NIS: f64 = 50.0;
 
-/// What a model says beyond A, B and C.
+/// The part of a model beyond A, B and C.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Extended {
-    /// Rows of D, one an output.
+    /// The rows of D, one per output.
     pub direct: Vec<[f64; 2]>,
-    /// What each output shows in the steady flight.
+    /// The value of each output in the steady flight.
     pub steady: Vec<f64>,
-    /// Whether each is in proportion to the dynamic pressure.
+    /// Whether each output is proportional to the dynamic pressure.
     pub scaled: Vec<bool>,
-    /// Spectral density of white noise on ẋ, units²·s; none is that of the inputs alone.
+    /// Spectral density of white noise on ẋ, units²·s; `None` leaves it to the noise of the inputs.
     pub process: Option<SMatrix<f64, 4, 4>>,
-    /// Standard deviations of the inputs' noise, a sample; none is that of usual ones, or none beside a process noise.
+    /// Standard deviations of the inputs' noise, per sample; `None` stands for those of usual inputs, or for zero if
+    /// there is a process noise.
     pub inputs: Option<[f64; 2]>,
-    /// Standard deviations of the outputs' noise; none is that of usual sensors.
+    /// Standard deviations of the outputs' noise; `None` stands for those of usual sensors.
     pub sigmas: Option<Vec<f64>>,
-    /// Biases of outputs.
+    /// The biases of outputs.
     pub biases: Vec<(usize, Drift)>,
     /// Gusts along and across: standard deviations (m/s) and lengths (m).
     pub gust: Option<([f64; 2], [f64; 2])>,
     /// A head wind, m/s.
     pub wind: Option<Drift>,
-    /// Density of the air, in parts of that of the steady flight; used if an output measures it.
+    /// The density of the air, relative to that of the steady flight; used if an output measures it.
     pub density: Option<Drift>,
-    /// Unknown parts of the states' derivatives.
+    /// Unknown parts of the states' derivatives, by the state.
     pub forces: Vec<(usize, Drift)>,
-    /// Models at rising airspeeds, this one among them, between which the filter blends; none if it is the only one. Each says of
-    /// outputs and of what is unknown the same.
+    /// Models at rising airspeeds, this one among them, between which the filter blends; empty if this is the only one.
+    /// All describe outputs and unknowns alike.
     pub grid: Vec<Model>,
 }
 
-/// Something that a filter estimates beside the four states.
+/// A quantity that a filter estimates in addition to the four states.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Beside {
-    /// What it is.
+    /// The name of the quantity.
     pub name: String,
-    /// What it was at the end, in units of the SI, …
+    /// The value at the end, in SI units.
     pub value: f64,
-    /// … with this standard deviation, …
+    /// The standard deviation of the value.
     pub sigma: f64,
-    /// … and what the model said of it.
+    /// The standard deviation that the model states for it.
     pub said: f64,
 }
 
-/// By the filter, with gusts `gust` times as strong as the model says, or as strong as the innovations support.
+/// Runs the filter, with gusts `gust` times as strong as the model says, or as strong as the innovations support.
 ///
 /// # Errors
 /// [`Error::Estimator`] or [`Error::Sample`].
@@ -85,7 +86,7 @@ pub(super) fn follow(
             ScalarKind::F64 => flight.follow::<f64>(),
             ScalarKind::Fixed => flight.follow::<Q16_16>(),
         };
-        // What one strength of gusts is too much for (in fixed point), another may be right for.
+        // A strength of gusts may be too much (in fixed point) where another is right.
         match (&best, &next) {
             (Ok((most, _)), Ok((support, _))) if support > most => best = next,
             (Err(_), _) => best = next,
@@ -95,7 +96,7 @@ pub(super) fn follow(
     best.map(|(_, followed)| followed)
 }
 
-/// A flight to be followed, with gusts of so many times what the model says.
+/// A flight to be followed, with gusts `gust` times as strong as the model says.
 struct Flight<'a> {
     model: &'a Model,
     extended: &'a Extended,
@@ -105,7 +106,7 @@ struct Flight<'a> {
 }
 
 impl Flight<'_> {
-    /// Log-likelihood of the innovations, and what came of them.
+    /// Runs the filter; returns the log-likelihood of the innovations, and the result.
     fn follow<T: Scalar>(&self) -> Result<(f64, Followed), Error> {
         let Self { model, extended, log, options, gust } = *self;
         let parts = Parts::of(model, &log.outputs, options, gust).ok_or(uav::Error::NoRoom)?;
@@ -145,24 +146,25 @@ impl Flight<'_> {
     }
 }
 
-/// Airspeeds beyond those of a grid, or far from that of a single model.
+/// Detection of airspeeds beyond those of a grid, or far from that of a single model.
 struct Outside {
-    /// Airspeed that estimates deviate from, m/s.
+    /// The airspeed from which estimates deviate, m/s.
     origin: f64,
-    /// Each end, and how far beyond it the model does not hold: downwards negative.
+    /// Each end, and how far beyond it the model ceases to hold, downwards negative, m/s.
     ends: Vec<[f64; 2]>,
-    /// The share of all estimates that must be beyond.
+    /// The share of estimates that must be beyond for the model to be doubted.
     share: f64,
-    /// How many are, and of how many.
+    /// The number of estimates beyond, and of all estimates.
     count: [usize; 2],
-    /// The furthest estimate, and the end that it is beyond.
+    /// The furthest estimate, and the end that it is beyond, m/s.
     furthest: Option<[f64; 2]>,
 }
 
 impl Outside {
-    /// Of its airspeed, how far a single model holds: there the lift of one that is linear is off by 3 (ΔV/V)², 4 %.
+    /// How far a single model holds, as a share of its airspeed: there the lift of a linear model is off by 3 (ΔV/V)²,
+    /// 4 %.
     const ALONE: f64 = 0.12;
-    /// A single model may leave that in a dive or a climb, but not for such a share of the flight.
+    /// The share of a flight for which a single model may be outside that range, as in a dive or a climb.
     const SHARE: f64 = 0.25;
 
     fn of(model: &Model) -> Self {
@@ -184,7 +186,7 @@ impl Outside {
         Self { origin, ends, share, count: [0; 2], furthest: None }
     }
 
-    /// Looks at an estimate, unless it is hardly one.
+    /// Examines an estimate, unless it is too uncertain.
     fn meet(&mut self, deviation: f64, sigma: f64) {
         let airspeed = self.origin + deviation;
         self.count[1] += 1;
@@ -200,27 +202,27 @@ impl Outside {
         }
     }
 
-    /// The furthest of them, if so many are there that the model is doubted.
+    /// The furthest estimate and its end, if so many are beyond that the model is doubted.
     fn told(&self) -> Option<[f64; 2]> {
         let [beyond, all] = self.count.map(|count| count as f64);
         self.furthest.filter(|_| beyond > self.share * all)
     }
 }
 
-/// What a filter is built of: for these outputs of a model, and with gusts of so many times what it says.
+/// The parts from which a filter is built, for the given outputs of a model and strength of gusts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parts {
     /// The log's outputs.
     pub outputs: Vec<Output>,
-    /// Spectral density of white noise on ẋ.
+    /// Spectral density of white noise on ẋ, units²·s.
     pub process: SMatrix<f64, 4, 4>,
-    /// What is estimated beside the four states, in their order.
+    /// The quantities estimated in addition to the four states, in the order of their states.
     pub unknown: Vec<Unknown>,
     /// Standard deviations of the inputs' noise.
     pub inputs: [f64; 2],
 }
 
-/// Something that is estimated beside the four states.
+/// A quantity that is estimated in addition to the four states.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Unknown {
     /// Gusts along and across.
@@ -236,7 +238,7 @@ pub enum Unknown {
 }
 
 impl Unknown {
-    /// Whether it moves the four states, and how many states it is.
+    /// Whether it moves the four states, and the number of its own states.
     pub const fn moves(&self) -> (bool, usize) {
         match self {
             Self::Gust(_) => (true, 2),
@@ -247,7 +249,8 @@ impl Unknown {
 }
 
 impl Parts {
-    /// As the model says it and the options change it; none of a model that says no more than A, B and C.
+    /// The parts as the model describes them and the options change them; `None` for a model that describes no more
+    /// than A, B and C.
     pub fn of(model: &Model, outputs: &[usize], options: &Options, gust: f64) -> Option<Self> {
         let extended = model.extended.as_deref()?;
         let Assumed { inputs, outputs: sigmas } = Assumed::of(model, outputs, options);
@@ -269,12 +272,12 @@ impl Parts {
             Unknown::Gust(Gust { sigmas, lengths, airspeed })
         });
         let forces = extended.forces.iter().map(|&(state, drift)| Unknown::Force(state, drift));
-        // A sensor that the log has not has no bias.
+        // A sensor that is not in the log has no bias.
         let biases = extended.biases.iter().filter_map(|&(output, drift)| {
             Some(Unknown::Bias(outputs.iter().position(|it| *it == output)?, drift))
         });
         let wind = extended.wind.filter(|_| outputs.iter().any(|&output| is_ground(output)));
-        // Nothing but the airspeed moves it: a dynamic pressure.
+        // An output that depends on the airspeed alone: a dynamic pressure.
         let sees_density = |&output: &usize| {
             let [alpha, rate, _, pitch] = model.outputs[output].1;
             extended.scaled[output] && [alpha, rate, pitch] == [0.0; 3]
@@ -289,7 +292,7 @@ impl Parts {
         })
     }
 
-    /// What stands where beside the four states, and what the model says of it after so many seconds.
+    /// The index, the name and the model's standard deviation after `duration` seconds of each additional quantity.
     fn told(&self, name: impl Fn(usize) -> String, duration: f64) -> Vec<(usize, String, f64)> {
         let said = |drift: &Drift| drift.sigma.hypot(drift.rate * duration.sqrt());
         let (mut next, mut all) = ([4, MOVING], Vec::new());

@@ -1,45 +1,46 @@
-//! A flight as it was logged.
+//! Logs of flights.
 
 use super::Error;
 
-/// Intervals that differ by less than this share from the usual one are jitter: autopilots log when they have time.
+/// The relative deviation from the usual interval that counts as jitter: autopilots log when they have time.
 const JITTER: f64 = 0.4;
-/// Share of intervals that must be the usual one, or where samples were lost up to so many of it, to this part of one.
+/// The share of intervals that must be regular: the usual one, or where samples were lost, a multiple of it up to
+/// `MOST_LOST`, to within `NEAR` of one interval.
 const REGULAR: f64 = 0.75;
 const MOST_LOST: f64 = 10.0;
 const NEAR: f64 = 0.15;
-/// From this many usual intervals on, samples are missing.
+/// The length, in usual intervals, above which an interval is a gap: samples are missing.
 const GAP: f64 = 1.5;
 
 /// A line of a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
-    /// µs.
+    /// Time, µs.
     pub t_us: i64,
-    /// δe, δt.
+    /// The inputs δe, δt.
     pub input: [f64; 2],
-    /// What was measured, in the order of the log's outputs; an empty field is nothing.
+    /// The measurements in the order of the log's outputs; `None` for an empty field.
     pub measured: Vec<Option<f64>>,
 }
 
-/// A log.
+/// The log of a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
-    /// Which of the model's outputs the log has.
+    /// The indices of the model's outputs that the log has.
     pub outputs: Vec<usize>,
-    /// In the order of their times.
+    /// The samples, in the order of their times.
     pub samples: Vec<Sample>,
     /// The usual time between samples, s.
     pub interval_s: f64,
-    /// How many times samples are missing.
+    /// The number of gaps, where samples are missing.
     pub gaps: usize,
 }
 
 impl Log {
-    /// Samples, in the order of their times, of some of a model's outputs.
+    /// A log of samples, in the order of their times, of some of a model's outputs.
     ///
     /// # Errors
-    /// [`Error::NotLater`], [`Error::TooShort`] or [`Error::Irregular`] of times at which no filter can be built.
+    /// [`Error::NotLater`], [`Error::TooShort`] or [`Error::Irregular`] for times at which no filter can be built.
     pub fn new(outputs: Vec<usize>, samples: Vec<Sample>) -> Result<Self, Error> {
         let step = |pair: &[Sample]| pair[1].t_us.saturating_sub(pair[0].t_us) as f64 / 1e6;
         let mut steps: Vec<f64> = samples.windows(2).map(step).collect();
@@ -64,14 +65,14 @@ impl Log {
     }
 }
 
-/// True states: a time in µs, and those that the file has of α, q, V, θ.
+/// True states: the time in µs, and those of α, q, V, θ that the file has.
 pub type Truth = Vec<(i64, [Option<f64>; 4])>;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A log whose intervals are these parts of 20 ms, in turn.
+    /// A log whose intervals are these multiples of 20 ms, in turn.
     fn log(parts: [f64; 3]) -> Result<Log, Error> {
         let mut t_us = 0;
         let samples = (0..300).map(|k| {

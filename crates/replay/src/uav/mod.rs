@@ -1,8 +1,8 @@
 //! The longitudinal motion of an aeroplane: α, q, V, θ.
 //!
-//! [`Deviations`] are a [`Log`] less the steady flight of its [`Model`]; [`Deviations::follow`] makes a [`Followed`] of them
-//! as the [`Options`] say, [`build`] what follows a flight while it comes. Angles are radians, the airspeed m/s, times µs
-//! of the log's clock.
+//! [`Deviations`] are a [`Log`] minus the steady flight of its [`Model`]; [`Deviations::follow`] computes a
+//! [`Followed`] from them according to the [`Options`], and [`build`] makes an estimator for a flight in progress.
+//! Angles are radians, the airspeed m/s, times µs of the log's clock.
 
 mod augmented;
 mod check;

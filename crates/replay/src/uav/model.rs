@@ -1,4 +1,4 @@
-//! What is known of an aircraft.
+//! Models of aircraft.
 
 use kestirim_observer_design::{Discrete, zero_order_hold};
 use kestirim_uav_estimator::Dynamics;
@@ -6,12 +6,12 @@ use kestirim_uav_longitudinal::{self as aircraft, Airframe, StateSpace, SteadyFl
 
 use super::{Error, Extended, Sample};
 
-/// Names of the states, which are the columns of a log where a model has no C.
+/// The names of the states, which are the columns of a log if a model has no C.
 pub const STATE_COLUMNS: [&str; 4] = ["alpha", "q", "V", "theta"];
-/// More outputs than states say nothing new.
+/// The largest number of outputs of a plain model: more outputs than states add nothing.
 pub const MOST_OUTPUTS: usize = 4;
 
-/// An aircraft.
+/// A known aircraft.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -29,10 +29,10 @@ pub enum Plant {
 }
 
 impl Plant {
-    /// All.
+    /// All known aircraft.
     pub const ALL: [Self; 3] = [Self::P1, Self::P2, Self::P3];
 
-    /// In continuous time.
+    /// The model in continuous time.
     ///
     /// # Panics
     /// Never: the known aircraft fly.
@@ -44,7 +44,7 @@ impl Plant {
         }
     }
 
-    /// With inputs that are held for `interval` seconds.
+    /// The model in discrete time, with inputs that are held for `interval` seconds.
     ///
     /// # Panics
     /// The interval is not a number, or infinite.
@@ -53,7 +53,7 @@ impl Plant {
         zero_order_hold(&a, &b, interval).expect("finite matrices")
     }
 
-    /// For a table.
+    /// The name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::P1 => "P1 Aerosonde",
@@ -66,28 +66,29 @@ impl Plant {
 /// What an estimator needs to know of an aircraft.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
-    /// How it flies.
+    /// The dynamics of the aircraft.
     pub dynamics: Dynamics,
-    /// What could be measured: a column of the log, and its row of C.
+    /// The outputs that can be measured: the name of the log's column, and the row of C.
     pub outputs: Vec<(String, [f64; 4])>,
-    /// State and input of the flight that deviations are counted from.
+    /// State and input of the steady flight from which deviations are counted.
     pub trim: Option<([f64; 4], [f64; 2])>,
-    /// What it says beyond that.
+    /// The extended part of the model, if it has one.
     pub extended: Option<Box<Extended>>,
 }
 
 impl Model {
-    /// Of a known aircraft.
+    /// The model of a known aircraft.
     pub fn of(plant: Plant) -> Self {
         let dynamics = Dynamics::Continuous(plant.model());
         let trim = (plant == Plant::P1).then(climb);
         Self { dynamics, outputs: state_outputs(), trim, extended: None }
     }
 
-    /// What is taken from values: nothing, or of `absolute` ones the model's trim.
+    /// The state and input that are subtracted from values: zero, or the model's trim if values are `absolute`.
     ///
     /// # Errors
-    /// [`Error::NoTrim`] if it has none; [`Error::GridOfDeviations`] if it is a grid, and values are not `absolute`.
+    /// [`Error::NoTrim`] if the model has none; [`Error::GridOfDeviations`] if it is a grid, and values are not
+    /// `absolute`.
     pub fn origin(&self, absolute: bool) -> Result<([f64; 4], [f64; 2]), Error> {
         match (absolute, self.trim) {
             (false, _) if self.is_grid() => Err(Error::GridOfDeviations),
@@ -97,13 +98,13 @@ impl Model {
         }
     }
 
-    /// Whether it is one of a grid, between which a filter blends.
+    /// Whether the model belongs to a grid, between whose models a filter blends.
     pub fn is_grid(&self) -> bool {
         self.extended.as_ref().is_some_and(|extended| !extended.grid.is_empty())
     }
 
-    /// What an output shows at this origin: nothing of deviations, and of absolute values what the model says it does in its
-    /// steady flight.
+    /// The value of an output at this origin: its row of C applied to the origin, or for absolute values what the model
+    /// states for its steady flight.
     pub fn shown(&self, output: usize, absolute: bool, origin: &[f64; 4]) -> f64 {
         match &self.extended {
             Some(extended) if absolute => extended.steady[output],
@@ -111,7 +112,7 @@ impl Model {
         }
     }
 
-    /// A sample without what its inputs add to these outputs at once.
+    /// A sample without the direct contribution (D) of its inputs to these outputs.
     pub(super) fn without_direct(&self, sample: &Sample, outputs: &[usize]) -> Sample {
         let mut sample = sample.clone();
         let Some(extended) = &self.extended else { return sample };
@@ -124,7 +125,7 @@ impl Model {
     }
 }
 
-/// State and input of P1's flight.
+/// State and input of P1's steady flight.
 fn climb() -> ([f64; 4], [f64; 2]) {
     let flight = SteadyFlight { airspeed: 40.0, climb_angle: 4.0_f64.to_radians() };
     let trim = Airframe::aerosonde().trim(&flight).expect("the Aerosonde flies");

@@ -1,4 +1,4 @@
-//! A model as it stands in a file.
+//! Models in files.
 
 use kestirim_observer_design::Discrete;
 use kestirim_uav_estimator::{Drift, Dynamics};
@@ -10,61 +10,61 @@ use super::model_grid::{ALONE, Airspeeds, Member};
 use super::model_of_airframe::KnownAirframe;
 use super::{Extended, MOST_EXTENDED_OUTPUTS, MOST_OUTPUTS, Model, STATE_COLUMNS, state_outputs};
 
-/// Columns of a log that no output can have.
+/// The columns of a log whose names no output can have.
 const TAKEN: [&str; 3] = ["t", "delta_e", "delta_t"];
-/// Biases, beside head wind and density, that the filter has room for.
+/// The largest number of biases, in addition to head wind and density, that the filter has room for.
 const MOST_BIASES: usize = 4;
 
-/// Why a file holds no model.
+/// Why a file does not hold a model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelFileError {
-    /// Names and rows do not belong together.
+    /// Names of outputs and rows of C do not match.
     #[error(
         "expected outputs, the names of as many columns as C has rows (none are needed without C, or if C has four rows)"
     )]
     Outputs,
-    /// No output, or too many.
+    /// There is no output, or there are too many.
     #[error("expected one to {most} outputs, found {found}")]
     Count {
-        /// How many there can be.
+        /// The largest possible number.
         most: usize,
-        /// How many there are.
+        /// The number found.
         found: usize,
     },
-    /// A name stands twice, or belongs to another column.
+    /// A name occurs twice, or is that of another column.
     #[error("expected each output to be one column of the log, and once; found {}", printable(.0))]
     Taken(String),
-    /// An interval of discrete time is not above zero.
+    /// The interval of a discrete-time model is not above zero.
     #[error("expected an h above 0 s, found {}", printable(&.0.to_string()))]
     Interval(f64),
-    /// A list has not as many entries as there are outputs.
+    /// The length of a list is not the number of outputs.
     #[error("expected {expected} numbers in {field}, one an output, found {found}")]
     Length {
-        /// Which list.
+        /// The name of the list.
         field: &'static str,
-        /// How many outputs there are.
+        /// The number of outputs.
         expected: usize,
-        /// How many entries it has.
+        /// The number of entries in the list.
         found: usize,
     },
-    /// A name is that of no output.
+    /// A name is not that of an output.
     #[error("expected the names of outputs in {field}, found {}", printable(.name))]
     Unknown {
-        /// Where.
+        /// The field in which it stands.
         field: &'static str,
-        /// Which name.
+        /// The name.
         name: String,
     },
-    /// An aircraft does not fly as it is said to.
+    /// An airframe has no steady flight as requested.
     #[error("{0}: no steady flight of this airframe")]
     Airframe(String),
-    /// A number cannot be what it is said to be.
+    /// A number or a combination of fields is invalid.
     #[error("expected {0}")]
     Number(&'static str),
 }
 
-/// A piece of a file, on one line and short.
+/// A piece of a file, shortened and on one line.
 fn printable(text: &str) -> String {
     const LONGEST: usize = 24;
     let start: String = text.chars().take(LONGEST).collect();
@@ -76,7 +76,7 @@ fn printable(text: &str) -> String {
     }
 }
 
-/// A model as it stands in a JSON file: A, B and perhaps C, outputs, trim {x, u} and h, or an airframe and its airspeed; and
+/// A model as in a JSON file: A, B and perhaps C, outputs, trim {x, u} and h, or an airframe and its airspeed; and
 /// whatever else is known.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct ModelFile {
@@ -101,7 +101,7 @@ pub struct ModelFile {
     pub(super) gust: Option<Gusts>,
     wind: Option<Drifting>,
     density: Option<Drifting>,
-    /// Of a grid, all models of which have the same biases: that of the middle one, m/s.
+    /// The airspeed of the middle model of a grid, m/s: all models of a grid have the same biases.
     #[serde(skip)]
     pub(super) usual_airspeed: Option<f64>,
     pub(super) affine: Option<Affine>,
@@ -154,10 +154,10 @@ pub(super) struct Affine {
 }
 
 impl ModelFile {
-    /// The model.
+    /// Builds the model.
     ///
     /// # Errors
-    /// What was expected, and what was found.
+    /// A [`ModelFileError`] that says what was expected, and what was found.
     pub fn model(mut self) -> Result<Model, ModelFileError> {
         if self.airframe.is_some() && self.coefficients.is_some() {
             return Err(ModelFileError::Number("airframe or coefficients, found both"));
@@ -171,7 +171,7 @@ impl ModelFile {
             }
             (Some(_), Some(_)) => return Err(ModelFileError::Number(ALONE)),
         };
-        // Deviations are small if they are counted from the middle.
+        // Deviations are smallest if they are counted from the middle model.
         let mut model = models[models.len() / 2].clone();
         if let Some(extended) = &mut model.extended {
             extended.grid = models;
@@ -191,7 +191,7 @@ impl ModelFile {
         is_there.contains(&true)
     }
 
-    /// The model of one airspeed.
+    /// Builds the model of one airspeed.
     pub(super) fn one(mut self, is_of_grid: bool) -> Result<Model, ModelFileError> {
         let known = self.airframe.take().map(KnownAirframe::airframe);
         if let Some(airframe) = self.coefficients.take().map(|it| *it).or(known) {
@@ -239,7 +239,7 @@ impl ModelFile {
         Ok(Model { dynamics, outputs, trim, extended: extended.map(Box::new) })
     }
 
-    /// Names and rows of C.
+    /// The names of the outputs and the rows of C.
     fn outputs(&self) -> Result<Vec<(String, [f64; 4])>, ModelFileError> {
         match (&self.c, &self.outputs) {
             (None, None) => Ok(state_outputs()),
@@ -253,7 +253,7 @@ impl ModelFile {
         }
     }
 
-    /// What there is beyond what every model says; none if there is nothing of it, unless it is to be there.
+    /// The part beyond what every model describes; `None` if there is nothing of it and it is not required.
     fn extended(
         &self,
         outputs: &[(String, [f64; 4])],
@@ -354,7 +354,7 @@ impl Drifting {
 }
 
 impl Noise {
-    /// Spectral density on ẋ.
+    /// The spectral density of white noise on ẋ.
     fn density(&self) -> Option<SMatrix<f64, 4, 4>> {
         match (self.process, self.process_matrix) {
             (_, Some(rows)) => Some(SMatrix::<f64, 4, 4>::from(rows).transpose()),

@@ -1,4 +1,4 @@
-//! Models of several airspeeds in one file.
+//! Grids of models: several airspeeds in one file.
 
 use serde::Deserialize;
 
@@ -6,7 +6,7 @@ use super::augmented::MOST_MODELS;
 use super::model_file::{ModelFile, Trim};
 use super::{Model, ModelFileError};
 
-/// What a grid is not beside.
+/// The error for a file with fields that cannot be combined with a grid.
 pub(super) const ALONE: &str = "a grid alone, where each model has its A, B, C, D and trim: without those, h, airframe, coefficients and airspeed beside it";
 
 /// One airspeed, or those of a grid, m/s.
@@ -17,7 +17,7 @@ pub(super) enum Airspeeds {
     Grid(Vec<f64>),
 }
 
-/// What a model of a grid says itself.
+/// The fields of a file that each model of a grid has itself.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub(super) struct Member {
     #[serde(rename = "A")]
@@ -33,7 +33,7 @@ pub(super) struct Member {
 }
 
 impl ModelFile {
-    /// Models of a grid that are written out.
+    /// Builds the models of a grid that are written out in the file.
     pub(super) fn of_members(&self, members: Vec<Member>) -> Result<Vec<Model>, ModelFileError> {
         if self.airframe.is_some() || self.coefficients.is_some() || self.says_matrices() {
             return Err(ModelFileError::Number(ALONE));
@@ -57,7 +57,7 @@ impl ModelFile {
         Ok(models)
     }
 
-    /// Models of an airframe at these airspeeds.
+    /// Builds the models of an airframe at the given airspeeds.
     pub(super) fn of_airspeeds(&self, airspeeds: &[f64]) -> Result<Vec<Model>, ModelFileError> {
         rising(airspeeds)?;
         let models = airspeeds.iter().map(|&airspeed| {
@@ -75,7 +75,7 @@ impl ModelFile {
     }
 }
 
-/// Whether these can be the airspeeds of a grid.
+/// Checks that these can be the airspeeds of a grid.
 fn rising(airspeeds: &[f64]) -> Result<(), ModelFileError> {
     let is_grid = (2..=MOST_MODELS).contains(&airspeeds.len())
         && airspeeds[0] > 0.0

@@ -1,4 +1,4 @@
-//! What a file of a model leaves out, from an aircraft's published coefficients.
+//! Completion of a model file from an aircraft's published coefficients.
 
 use kestirim_uav_longitudinal::{Airframe, SpecificForce, SteadyFlight};
 use serde::Deserialize;
@@ -6,27 +6,30 @@ use serde::Deserialize;
 use super::model_file::{Affine, Bias, Gusts, ModelFile, Trim};
 use super::{ModelFileError, STATE_COLUMNS};
 
-/// What is usually measured.
+/// The outputs of a model that names none: what is usually measured.
 const USUAL: [&str; 4] = ["q", "V", "theta", "az"];
-/// Specific forces along the body's axes, beside the states.
+/// The names of specific forces along the body's axes, which can be outputs in addition to the states.
 const FORCES: [&str; 2] = ["ax", "az"];
-/// Published coefficients are wrong by such a part, …
+/// The relative error of published coefficients.
 const WRONG: f64 = 0.1;
-/// … which shows in deviations of states and inputs of this size …
+/// The size of the deviations of states and inputs in which that error shows.
 const DEVIATIONS: [f64; 6] = [0.03, 0.1, 1.0, 0.05, 0.03, 0.1];
-/// … that last so long, s.
+/// The time for which such deviations last, s.
 const LASTING: f64 = 0.5;
-/// What θ̇ is off by rounding and filtering, rad²/s.
+/// The process noise of θ̇ from rounding and filtering, rad²/s.
 const PITCH: f64 = 1e-8;
-/// Light turbulence: deviations (m/s) and lengths (m) along and across. `replay` tries stronger and weaker.
+/// Light turbulence: standard deviations (m/s) and lengths (m) along and across. `replay` tries stronger and weaker
+/// gusts.
 const GUST: Gusts = Gusts { sigma_u: 1.0, sigma_w: 1.0, length_u: 200.0, length_w: 50.0 };
-/// The trim is another one than computed, of ẋ; that of α̇ is of a lift that is wrong by a part.
+/// Errors of the computed trim, as unknown parts of ẋ. That of α̇ is due to a lift that is wrong by `WRONG`, and is set
+/// with the airspeed.
 const AFFINE: Affine = Affine { sigma: [0.0, 0.5, 0.3, 0.0], rate: [1e-3, 1e-3, 0.02, 0.0] };
-/// Errors of a gyro and a pitch angle, and how an accelerometer's walks.
+/// The biases of a gyro and of a pitch angle, and the rates at which they and an accelerometer's bias walk.
 const GYRO: [f64; 2] = [0.02, 1e-5];
 const PITCH_ANGLE: [f64; 2] = [0.03, 1e-5];
 const ACCELEROMETER_RATE: f64 = 0.01;
-/// Where it is mounted, a pitot tube measures such a part of the airspeed too much or too little, and this walks, m/s per √s.
+/// The position error of a pitot tube, which measures a share of the airspeed too much or too little depending on its
+/// mounting, and its random walk, m/s per √s.
 const POSITION_ERROR: f64 = 0.03;
 const POSITION_RATE: f64 = 1e-3;
 
@@ -41,7 +44,7 @@ pub enum KnownAirframe {
 }
 
 impl KnownAirframe {
-    /// Its size and coefficients.
+    /// The size and coefficients of the aircraft.
     pub fn airframe(self) -> Airframe {
         match self {
             Self::Aerosonde => Airframe::aerosonde(),
@@ -51,7 +54,7 @@ impl KnownAirframe {
 }
 
 impl ModelFile {
-    /// Trim, A, B, C, D and noise of an aircraft in a steady flight. What the file says itself stands.
+    /// Fills in trim, A, B, C, D and noise of an aircraft in a steady flight. What the file states itself remains.
     pub(super) fn flown(
         mut self,
         airframe: &Airframe,
@@ -67,7 +70,7 @@ impl ModelFile {
         let rows = names.iter().map(|name| row(name, &force, &trim.state.into()));
         let rows = rows.collect::<Result<Vec<_>, _>>()?;
         let is_there = |name: &str| names.iter().any(|other| other == name);
-        // A lift that is wrong all the time shows in the trim, and beside an accelerometer's own error.
+        // A constant error of the lift shows in the trim, and adds to an accelerometer's own error.
         let lift = WRONG * airframe.gravity;
         let airspeed = self.usual_airspeed.unwrap_or(flight.airspeed);
         let biases = [
@@ -88,7 +91,7 @@ impl ModelFile {
         let mut affine = AFFINE;
         affine.sigma[0] = lift / airspeed;
         self.affine.get_or_insert(affine);
-        // Drag goes with the square of the airspeed, but thrust does not: ax is not in proportion.
+        // Drag is proportional to the square of the airspeed, but thrust is not, so neither is ax.
         let scaled = || names.iter().filter(|name| *name == "az").cloned().collect();
         self.scaled.get_or_insert_with(scaled);
         self.a = Some(model.a.transpose().into());
@@ -105,7 +108,7 @@ impl ModelFile {
     }
 }
 
-/// C, D and what is shown in the steady flight.
+/// A row of C, a row of D and the value in the steady flight.
 type Row = ([f64; 4], [f64; 2], f64);
 
 fn row(name: &str, force: &SpecificForce, steady: &[f64; 4]) -> Result<Row, ModelFileError> {

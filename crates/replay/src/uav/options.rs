@@ -1,10 +1,10 @@
-//! What can be chosen about an estimator.
+//! Options of the estimators.
 
 use super::Poles;
 use super::poles::MIDDLE;
 use crate::ScalarKind;
 
-/// Which estimator follows a flight.
+/// The kind of estimator.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
@@ -16,37 +16,37 @@ pub enum EstimatorKind {
     Luenberger,
 }
 
-/// Everything that can be chosen about the estimators.
+/// All options of the estimators.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Which one.
+    /// The kind of estimator.
     pub estimator: EstimatorKind,
-    /// Of the observer, 1/s.
+    /// The poles of the observer, 1/s.
     pub poles: Poles,
-    /// Standard deviations of the inputs' noise; none is those of usual sensors.
+    /// Standard deviations of the inputs' noise; `None` stands for those of usual sensors.
     pub inputs: Option<[f64; 2]>,
-    /// The same of the outputs.
+    /// Standard deviations of the outputs' noise; `None` stands for those of usual sensors.
     pub outputs: Option<[f64; 4]>,
-    /// Q/R of the filter, times that of the noise.
+    /// The ratio Q/R of the filter, relative to that of the noise.
     pub ratio: f64,
     /// Number type.
     pub scalar: ScalarKind,
 }
 
 impl Options {
-    /// The same with another estimator.
+    /// The options with another estimator.
     pub const fn with(&self, estimator: EstimatorKind) -> Self {
         Self { estimator, ..*self }
     }
 
-    /// Standard deviations of the inputs' noise with this Q/R.
+    /// Scales standard deviations of the inputs' noise to this Q/R.
     pub fn weighted(&self, inputs: [f64; 2]) -> [f64; 2] {
         inputs.map(|sigma| sigma * self.ratio.sqrt())
     }
 }
 
 impl Default for Options {
-    /// The filter, for usual sensors.
+    /// The Kalman filter, for usual sensors.
     fn default() -> Self {
         Self {
             estimator: EstimatorKind::default(),

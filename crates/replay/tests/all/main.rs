@@ -1,4 +1,5 @@
-//! What replays whole recordings. It stands apart from the tests of single functions, so that those are built without the trackers.
+//! Tests that replay whole recordings. They are separate from the tests of single functions, so that those are built
+//! without the trackers.
 
 mod robot_smoother;
 #[cfg(feature = "serde")]

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 const ANCHORS: [[f64; 3]; 5] =
     [[0.0, 0.0, 2.0], [8.0, 0.0, 1.0], [8.0, 6.0, 2.0], [0.0, 6.0, 1.0], [4.0, -1.0, 1.5]];
-/// The most that are smoothed.
+/// The largest number of epochs that are smoothed.
 const MOST_EPOCHS: usize = 50_000;
 const ERRORS: [f64; 5] = [0.15, -0.1, 0.05, -0.15, 0.1];
 
@@ -50,14 +50,14 @@ fn the_errors_of_anchors_are_found_and_no_longer_in_the_positions() {
     assert!(after < 0.35 * before && after < 0.04, "{before} {after}");
     let sigma = smoothed.parts[0][300].sigma_m().unwrap();
     assert!((0.3..3.0).contains(&(after / sigma)), "{after} {sigma}");
-    // What all have in common may be said of each.
+    // An error common to all anchors may be attributed to each of them.
     let mean = smoothed.biases.iter().map(|[bias, _]| bias).sum::<f64>() / 5.0;
     for ([bias, _], expected) in smoothed.biases.iter().zip(ERRORS) {
         assert!((bias - mean - expected + 0.01).abs() < 0.04, "{:?}", smoothed.biases);
     }
 }
 
-/// A driver that stamps the ranges of a round one after the other, some microseconds apart.
+/// A driver stamps the ranges of a round one after the other, some microseconds apart.
 #[test]
 fn epochs_may_be_microseconds_apart() {
     let (setup, events) = (Setup::new(&ANCHORS, 1.0), round());
@@ -119,7 +119,7 @@ fn what_cannot_be_smoothed_is_said() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Anchors on top of each other, ranges of anything, at times of anything: what comes out is a number, or a refusal.
+    /// With anchors on top of each other, arbitrary ranges and arbitrary times, the result is a number or a refusal.
     #[test]
     fn whatever_was_measured(
         anchors in prop::collection::vec(prop::array::uniform3(-20.0..20.0_f64), 3..6),

@@ -64,7 +64,7 @@ fn flight() -> (Log, Truth) {
     (Log::new(vec![0, 1, 2, 3], samples).unwrap(), truth)
 }
 
-/// What came of it, and the rms error of α in mrad after the first ten seconds.
+/// The result of a replay, and the RMS error of α in mrad after the first ten seconds.
 fn followed(model: Model, options: &Options) -> (Followed, f64) {
     let (log, truth) = flight();
     let flight = Deviations::new(model, log, Some(truth), true).unwrap();
@@ -150,7 +150,7 @@ fn a_flight_beyond_the_grid_is_told() {
     assert!(end == 18.0 && (21.8..22.6).contains(&airspeed), "{airspeed}");
     let (airspeed, end) = beyond(json!([18, 20, 22])).unwrap();
     assert!(end == 18.0 && (13.4..14.2).contains(&airspeed), "{airspeed}");
-    // Of a single model for half of the flight.
+    // A single model, for half of the flight.
     let (airspeed, end) = beyond(json!(18)).unwrap();
     assert!(end == 18.0 && (airspeed - end).abs() > 3.0, "{airspeed}");
 }

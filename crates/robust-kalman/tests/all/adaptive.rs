@@ -1,4 +1,4 @@
-//! The adaptive factor: motion is told from outliers, and only the block is touched.
+//! The adaptive factor: motion is distinguished from outliers, and only the block is affected.
 
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{
@@ -6,14 +6,14 @@ use kestirim_robust_kalman::{
 };
 use nalgebra::SVector;
 
-/// A place known to 5 mm, a clock of which nothing is known, and an ambiguity a satellite, known to 5 mm.
+/// A position known to 5 mm, an unknown clock, and an ambiguity for each satellite, known to 5 mm.
 fn predicted() -> Gaussian<f64, 11> {
     let mut variances = [0.005 * 0.005; 11];
     variances[2] = 1e6;
     Gaussian::new(SVector::zeros(), Covariance::from_variances(&variances))
 }
 
-/// Phases of eight satellites after the place moved; one of them is an outlier.
+/// Takes in the phases of eight satellites after the receiver has moved; one of them is off by `wild`.
 fn update(robust: &Robust<f64>, moved: [f64; 2], wild: f64) -> (Gaussian<f64, 11>, Summary<f64>) {
     let rows: Vec<[(usize, f64); 4]> = (0..8)
         .map(|index| {
@@ -58,7 +58,7 @@ fn while_nothing_moves_nothing_happens() {
 fn a_motion_of_the_block_is_followed() {
     let moved = [0.3, -0.2];
     let stubborn = update(&Robust::iterative_igg3(), moved, 0.0).0;
-    // In the published order the phases that show it are rejected first.
+    // In the published order, the phases that show the motion are rejected first.
     let (_, summary) = update(&adaptive(Discrepancy::Block, Order::AfterWeights), moved, 0.0);
     assert!(summary.rejected > 4 && summary.adaptive_factor > 0.5, "{summary:?}");
     let before = update(&adaptive(Discrepancy::Block, Order::BeforeWeights), moved, 0.0);
@@ -69,7 +69,7 @@ fn a_motion_of_the_block_is_followed() {
         (estimate.mean[0] - moved[0]).hypot(estimate.mean[1] - moved[1])
     };
     assert!(error(&estimate) < 0.5 * error(&stubborn), "{} {}", error(&estimate), error(&stubborn));
-    // The other states' variances are as before the update, or less.
+    // The variances of the other states are at most those before the update.
     for index in 2..11 {
         let variance = |of: &Gaussian<f64, 11>| of.covariance.variances()[index];
         assert!(variance(&estimate) <= variance(&predicted()) * (1.0 + 1e-9));
@@ -78,13 +78,13 @@ fn a_motion_of_the_block_is_followed() {
 
 #[test]
 fn the_innovations_drown_in_the_clock() {
-    // As published: tr Qε is that of the clock, and eq. 22 never fires.
+    // As published: tr Qε is dominated by the clock, and eq. 22 never fires.
     let robust = adaptive(Discrepancy::Innovation, Order::AfterWeights);
     let (_, summary) = update(&robust, [0.3, -0.2], 0.0);
     assert!(summary.discrepancy < 0.5 && summary.adaptive_factor == 1.0, "{summary:?}");
     let published = update(&Robust::adaptive(Block::new(0, 2)).published(), [0.3, -0.2], 0.0).1;
     assert_eq!(published.adaptive_factor, 1.0);
-    // In units of the prediction alone, the same jump is a large one.
+    // In units of the prediction alone, the same jump is large.
     let robust = adaptive(Discrepancy::Prediction, Order::ByMajority);
     assert_eq!(update(&robust, [0.3, -0.2], 0.0).1.adaptive_factor, 0.05);
 }

@@ -1,4 +1,5 @@
-//! Whatever is fed in: a typed error and an untouched estimate, or a finite one with a covariance.
+//! Whatever is fed in, the result is either a typed error and an untouched estimate, or a finite
+//! estimate with a covariance.
 
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{
@@ -19,7 +20,8 @@ fn number() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Of everyday size: with rows of hundreds, coarse fixed point cannot hold the gain.
+/// Derivatives of everyday size: with rows of hundreds, coarse fixed point cannot represent the
+/// gain.
 fn derivative() -> impl Strategy<Value = f64> {
     prop_oneof![200 => -3.0..3.0f64, 1 => prop_oneof![Just(f64::NAN), Just(1e30), Just(0.0)]]
 }
@@ -75,7 +77,7 @@ fn robust<T: Scalar>() -> impl Strategy<Value = Robust<T>> {
     })
 }
 
-/// The smallest eigenvalue of the correlations; 1 where a variance is zero.
+/// The smallest eigenvalue of the correlation matrix; 1 where a variance is zero.
 fn smallest_eigenvalue<T: Scalar>(covariance: &Covariance<T, 3>) -> f64 {
     let p: SMatrix<f64, 3, 3> = covariance.to_matrix().map(T::to_f64);
     let correlation = SMatrix::<f64, 3, 3>::from_fn(|i, j| {
@@ -152,7 +154,8 @@ proptest! {
     }
 }
 
-/// Found by the test above: a row of a few last places and no noise, of which the gain kept 5 %.
+/// Found by the test above: a row of a few units in the last place and no noise, whose gain kept 5
+/// % of its value.
 #[test]
 fn fixed_point_takes_no_more_than_there_is() {
     let robust = Robust { weight: Weight::Huber(Huber { k: Q16_16::ONE }), ..Robust::plain() };
@@ -201,7 +204,7 @@ fn what_is_wrong_is_named() {
     let scale = Scale::Residuals { floor: 0.0 };
     let refused = Robust { scale, ..Robust::plain() }.update(&mut estimate, &[], &mut decisions);
     assert_eq!(refused, Err(Error::InvalidConfiguration));
-    // No measurements at all are nothing wrong.
+    // An epoch without measurements is not an error.
     let summary = Robust::adaptive(Block::new(0, 2)).update(&mut estimate, &[], &mut []);
     assert_eq!(summary.expect("an update").adaptive_factor, 1.0);
     assert_eq!(estimate, before);

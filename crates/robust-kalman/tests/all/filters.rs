@@ -1,4 +1,4 @@
-//! The five filters against dense matrices, numpy and each other.
+//! The five filters, compared with dense matrices, numpy and each other.
 
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{
@@ -10,7 +10,7 @@ use nalgebra::SVector;
 
 type Row = [(usize, f64); 3];
 
-/// Nine measurements of three states, of which the sixth and the ninth do not fit.
+/// Rows of nine measurements of three states; the sixth and the ninth measurement do not fit.
 const H: [[f64; 3]; 9] = [
     [1.0, 0.0, 0.0],
     [1.0, 1.0, 0.0],
@@ -46,7 +46,7 @@ fn close<T: Scalar>(found: T, expected: f64, tolerance: f64) {
     assert!((found.to_f64() - expected).abs() < tolerance, "{found:?}, not {expected}");
 }
 
-/// What numpy makes of it, with dense matrices.
+/// Compares the t-test with numpy's result by dense matrices.
 fn check_t_test<T: Scalar>(tolerance: f64) {
     let rows = rows::<T>();
     let mut estimate = predicted::<T>();
@@ -107,7 +107,7 @@ fn residuals_are_standardised_by_their_posterior_variance() {
     for (decision, expected) in decisions.iter().zip(standardised) {
         close(decision.standardised, expected, 1e-9);
     }
-    // Eq. 17's scale is √(NIS/n).
+    // The scale of eq. 17 is √(NIS/n).
     let robust = Robust { scale: Scale::Epoch, ..Robust::plain() };
     let summary =
         robust.update(&mut predicted(), &epoch(&rows), &mut decisions).expect("an update");
@@ -123,7 +123,7 @@ fn the_jump_of_a_block_is_that_of_least_squares() {
     close(jump.distance[0], 0.431_057_795_210_472_5, 1e-9);
     close(jump.distance[1], -0.032_449_483_525_912_48, 1e-9);
     close(jump.discrepancy, 0.153_941_107_875_160_74, 1e-9);
-    // One measurement tells of one direction, and no distance.
+    // One measurement determines one direction, and so no distance.
     let one = kestirim_robust_kalman::jump(&predicted(), &epoch(&rows)[..1], Block::new(0, 2));
     let one = one.expect("a block");
     assert_eq!((one.directions, one.distance), (1, [0.0; 6]));
@@ -160,7 +160,7 @@ fn the_plain_filter_is_a_sequence_of_updates_bit_for_bit() {
     check::<Q12_20>();
 }
 
-/// Where a tag is, by ranges to twenty places; `wild` of them are off.
+/// Ranges from a tag to twenty places; those in `wild` are off.
 fn ranges(wild: &[usize]) -> (Vec<Row>, Vec<f64>) {
     let rows = (0..20).map(|index| {
         let angle = f64::from(index) * 0.9;
@@ -187,7 +187,7 @@ fn a_rejected_measurement_might_as_well_not_have_been_there() {
     let mut decisions = [Decision::NONE; 20];
     let mut expected = predicted::<f64>();
     Robust::plain().update(&mut expected, &without, &mut decisions).expect("an update");
-    // In one shot only in units that an outlier inflates: else good measurements fall with it.
+    // One-shot treatment needs a scale that the outlier inflates: otherwise good measurements lose weight with it.
     let one_shot = Robust { scale: Scale::Residuals { floor: 1.0 }, ..Robust::igg3() };
     for robust in [one_shot, Robust::iterative_igg3(), Robust::adaptive(Block::new(0, 2))] {
         let mut estimate = predicted::<f64>();
@@ -213,7 +213,7 @@ fn worst_first_rejects_several_and_nothing_else() {
     assert_eq!(rejected.collect::<Vec<_>>(), wild);
     assert_eq!((summary.down_weighted, summary.passes), (0, 2));
     assert!(estimate.mean.abs().max() < 0.1);
-    // A bound on the rounds is kept.
+    // A limit on the number of treated measurements is respected.
     let bounded = Robust { reweighting: Reweighting::WorstFirst { most: 2 }, ..robust };
     let summary = bounded.update(&mut predicted(), &epoch, &mut decisions).expect("an update");
     assert_eq!(summary.passes, 2);
@@ -236,7 +236,7 @@ fn two_of_eight_hide_behind_the_scale_of_the_epoch() {
     let (masked, of_epoch) = level(Scale::Epoch);
     assert_eq!((of_epoch.rejected, of_epoch.down_weighted), (0, 0), "{of_epoch:?}");
     assert!(of_epoch.scale > 10.0 && masked > 0.9, "{masked}");
-    // No |ṽ| can be larger than √n.
+    // No |ṽ| can exceed √n.
     let robust = Robust { scale: Scale::Epoch, ..Robust::plain() };
     let mut single = epoch;
     (single[3].innovation, single[6].innovation) = (1e6, 0.0);
@@ -249,7 +249,7 @@ fn two_of_eight_hide_behind_the_scale_of_the_epoch() {
         assert_eq!((summary.rejected, summary.down_weighted), (2, 0), "{summary:?}");
         assert!(found.abs() < 0.02, "{found}");
     }
-    // The two have moved all residuals, so their median sees a large scale as well.
+    // The two outliers have shifted all residuals, so the median sees a large scale as well.
     let (_, summary) = level(Scale::Residuals { floor: 1.0 });
     assert!(summary.scale > 10.0 && summary.rejected == 0, "{summary:?}");
 }
@@ -291,7 +291,7 @@ fn weight_functions_are_types_too() {
     }
 }
 
-/// A user's own: all or nothing at three standard deviations.
+/// A user-defined weight function: full weight up to three standard deviations, none beyond.
 struct Gate;
 
 impl WeightFunction<f64> for Gate {
@@ -321,7 +321,7 @@ fn a_users_own_weight_function_is_asked() {
 
 #[test]
 fn what_nothing_else_tells_of_is_not_judged() {
-    // A new satellite's phase: an unknown ambiguity takes any value of it.
+    // The phase of a new satellite: the unknown ambiguity absorbs any value of it.
     let common = [(0, 1.0)];
     let phase = [(0, 1.0), (1, 1.0)];
     let of = |row, innovation, variance| Measurement { row, innovation, variance };
@@ -337,7 +337,7 @@ fn what_nothing_else_tells_of_is_not_judged() {
     Robust::iterative_igg3().update(&mut estimate, &epoch, &mut decisions).expect("an update");
     assert_eq!((decisions[3].reason, decisions[3].weight), (Reason::NoRedundancy, 1.0));
     assert!((estimate.mean[1] - 500.0).abs() < 0.1);
-    // A single measurement that only confirms a perfect prediction's zero variance is no problem either.
+    // A single measurement of a state with zero variance is not refused either.
     let mut known = Gaussian::new(SVector::from([0.0, 0.0]), Covariance::zero());
     let alone = [of(&common[..], 0.1, 0.01)];
     Robust::t_test().update(&mut known, &alone, &mut decisions).expect("an update");

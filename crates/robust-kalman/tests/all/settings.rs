@@ -1,4 +1,4 @@
-//! Settings of a filter: which are taken, and what each changes.
+//! Settings of a filter: which are accepted, and what each changes.
 
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{
@@ -8,7 +8,8 @@ use kestirim_robust_kalman::{
 use kestirim_scalar::{Q12_20, Q16_16, Scalar};
 use nalgebra::vector;
 
-/// One state of this variance, measured directly and as well each time, and another that is not.
+/// Updates a state of variance `prior`, measured directly with variance `noise` each time, beside
+/// one not measured.
 fn measured<const K: usize>(
     robust: &Robust<f64>,
     [prior, noise]: [f64; 2],
@@ -23,7 +24,7 @@ fn measured<const K: usize>(
     Ok((summary, decisions))
 }
 
-/// A state that hardly moves.
+/// Variances of a state so well known that measurements hardly move it, and of its measurements.
 const KNOWN: [f64; 2] = [1e-6, 1.0];
 
 fn igg3(k0: f64, k1: f64) -> Weight<f64> {
@@ -116,7 +117,7 @@ fn the_published_equations_descend_as_published() {
 
 #[test]
 fn a_redundancy_is_relative_and_what_has_no_more_than_the_least_is_not_judged() {
-    // Of R there is left R/(P + R): of 4 beside 4 a half.
+    // The share of R that is left is R/(P + R): one half for R = P = 4.
     let reason = |least_redundancy| {
         let robust = Robust { least_redundancy, ..Robust::igg3() };
         let (_, [decision]) = measured(&robust, [4.0, 4.0], [1.0]).expect("an update");
@@ -132,7 +133,7 @@ fn the_scale_of_innovations_is_their_lower_median() {
         measured(robust, prior, innovations).expect("an update").0.scale
     };
     let robust = Robust { scale: Scale::Innovations { floor: 1e-3 }, ..Robust::plain() };
-    // In units of √(h P hᵀ + R), which is 2.
+    // In units of √(h P hᵀ + R), which is 2 here.
     let prior = [3.0, 1.0];
     for (innovations, median) in [
         ([1.0, -2.0, 3.0, 100.0], 2.0),
@@ -147,7 +148,7 @@ fn the_scale_of_innovations_is_their_lower_median() {
     }
     let floored = Robust { scale: Scale::Innovations { floor: 1.0 }, ..Robust::plain() };
     assert_eq!(scale(&floored, prior, [0.1; 4]), 1.0);
-    // Of three the one in the middle.
+    // The median of three is the middle one.
     let (summary, _) = measured(&robust, prior, [3.0, 1.0, 2.0]).expect("an update");
     assert!((summary.scale - 1.4826).abs() < 1e-12, "{summary:?}");
 }
@@ -168,20 +169,20 @@ fn a_t_test_measures_the_distance_from_the_others() {
     let (_, decisions) = measured(&robust, KNOWN, [0.1, 0.3, 3.0]).expect("an update");
     for (index, decision) in decisions.iter().enumerate() {
         let [a, b] = [1, 2].map(|other| decisions[(index + other) % 3].standardised);
-        // Two numbers deviate by their difference over √2.
+        // The standard deviation of two numbers is their difference over √2.
         let expected =
             (decision.standardised - f64::midpoint(a, b)).abs() / ((a - b).abs() / 2_f64.sqrt());
         assert!((decision.statistic - expected).abs() < 1e-9, "{decisions:?}");
         assert_eq!(decision.reason, Reason::Agrees);
     }
-    // Where nothing differs, nothing stands out; and two are too few.
+    // Among equal values none stands out, and two are too few for a t-test.
     let (_, decisions) = measured(&robust, KNOWN, [0.0; 5]).expect("an update");
     assert!(decisions.iter().all(|decision| decision.statistic == 0.0), "{decisions:?}");
     let (_, decisions) = measured(&robust, KNOWN, [0.1, 3.0]).expect("an update");
     assert!(decisions.iter().all(|decision| decision.reason == Reason::TooFew), "{decisions:?}");
 }
 
-/// Judged by majority or otherwise, with an adaptive factor on the state that is measured.
+/// A filter with an adaptive factor of this discrepancy and order on the measured state.
 fn adaptive(discrepancy: Discrepancy, order: Order) -> Robust<f64> {
     let adaptive = Adaptive { discrepancy, order, ..Adaptive::new(Block::new(0, 1)) };
     Robust { adaptive: Some(adaptive), ..Robust::iterative_igg3() }
@@ -193,7 +194,7 @@ fn a_majority_is_more_than_a_third() {
         let innovations = core::array::from_fn(|index| if index < wild { 50.0 } else { 0.0 });
         let robust = adaptive(Discrepancy::Block, Order::ByMajority);
         let (summary, _) = measured::<K>(&robust, [0.01, 1.0], innovations).expect("an update");
-        // Judged without those that were rejected, nothing has moved.
+        // Judged without the rejected measurements, the state has not moved.
         summary.discrepancy > 1.0
     }
     assert!(!is_motion::<6>(2) && is_motion::<6>(3));
@@ -218,19 +219,19 @@ fn an_outlier_that_was_not_taken_for_motion_is_rejected_all_the_same() {
 #[test]
 fn the_published_discrepancy_is_of_what_has_a_weight() {
     let robust = adaptive(Discrepancy::Innovation, Order::AfterWeights);
-    // √(εᵀε / tr Qε), each of 3 and 1.
+    // √(εᵀε / tr Qε), where each innovation has the variance 3 + 1.
     let discrepancy = |innovations| {
         measured::<4>(&robust, [3.0, 1.0], innovations).expect("an update").0.discrepancy
     };
     let expected = ((4.0 + 4.0 + 9.0 + 9.0) / (4.0 * 4.0_f64)).sqrt();
     assert!((discrepancy([2.0, 2.0, 3.0, 3.0]) - expected).abs() < 1e-12);
-    // One that is rejected is left out.
+    // A rejected measurement is left out.
     let expected = ((4.0 + 4.0 + 9.0) / (3.0 * 4.0_f64)).sqrt();
     assert!((discrepancy([2.0, 2.0, 500.0, 3.0]) - expected).abs() < 1e-12);
-    // Of nothing, it is none.
+    // Without any measurement left, the discrepancy is zero.
     let (summary, _) = measured(&robust, [1e-6, 1.0], [1e3, 2e3, -1e3, -3e3]).expect("an update");
     assert_eq!((summary.rejected, summary.discrepancy), (4, 0.0), "{summary:?}");
-    // What has less weight is expected to be farther off.
+    // A down-weighted measurement is expected to deviate more.
     let (summary, decisions) = measured(&robust, KNOWN, [0.0, 4.0, 0.0]).expect("an update");
     let weight = decisions[1].weight;
     assert!(weight > 0.0 && weight < 1.0, "{decisions:?}");

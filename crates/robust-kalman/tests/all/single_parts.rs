@@ -1,4 +1,4 @@
-//! What the filters' tests do not tell apart: single parts, at their bounds, beside closed forms.
+//! Single parts that the tests of the filters do not tell apart, at their bounds, compared with closed forms.
 
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{
@@ -6,7 +6,7 @@ use kestirim_robust_kalman::{
 };
 use nalgebra::{SMatrix, SVector, matrix, vector};
 
-/// Four states that correlate, and three measurements of them that determine the last three.
+/// Four correlated states, and three measurements that determine the last three.
 fn correlated() -> (Gaussian<f64, 4>, SMatrix<f64, 3, 4>, SVector<f64, 3>) {
     let covariance = matrix![
         2.0, 0.4, 0.3, -0.2;
@@ -43,7 +43,7 @@ fn a_jump_is_that_of_generalised_least_squares() {
     let spread = rows * estimate.covariance.to_matrix() * rows.transpose()
         + SMatrix::from_diagonal_element(VARIANCE);
     let spread = spread.try_inverse().expect("a covariance");
-    // As many measurements as states: the jump explains them, and their weighted square is its own.
+    // As many measurements as states: the jump explains them exactly, and the discrepancy is their own weighted square.
     let distance = rows.fixed_columns::<3>(1).try_inverse().expect("rows of rank 3") * innovations;
     let discrepancy = (innovations.dot(&(spread * innovations)) / 3.0).sqrt();
 
@@ -63,7 +63,7 @@ fn a_jump_is_known_along_as_many_directions_as_there_are_measurements() {
     assert!(partly.discrepancy > 0.0);
     let nothing = jump_of(0, Block::new(1, 3)).expect("a block");
     assert_eq!((nothing.directions, nothing.discrepancy), (0, 0.0));
-    // Of one state of them the least squares of all three.
+    // For a single state of the block, the jump is the least squares of all three measurements.
     let (estimate, rows, innovations) = correlated();
     let spread = rows * estimate.covariance.to_matrix() * rows.transpose()
         + SMatrix::from_diagonal_element(VARIANCE);
@@ -144,11 +144,11 @@ fn what_is_known_without_doubt_has_no_discrepancy() {
 
 #[test]
 fn a_redundancy_is_the_share_of_its_noise_that_a_residual_shows() {
-    // P⁺ = P R/(P + R), and of R = 1 there is left R/(P + R).
+    // P⁺ = P R/(P + R); the share of R = 1 that is left is R/(P + R).
     let (_, decisions) = update(&Robust::igg3(), [1.0, 3.0], [0.1; 2]).expect("an update");
     assert!((decisions[0].redundancy - 0.5).abs() < 1e-12, "{decisions:?}");
     assert!((decisions[1].redundancy - 0.25).abs() < 1e-12, "{decisions:?}");
-    // Nothing is left where nothing else is known of a state: not judged, whatever the least redundancy.
+    // Where nothing else is known of a state, no redundancy is left: not judged, whatever the least redundancy.
     let robust = Robust { least_redundancy: 0.0, ..Robust::igg3() };
     let (_, decisions) = update(&robust, [1e200; 2], [1.0; 2]).expect("an update");
     for decision in decisions {

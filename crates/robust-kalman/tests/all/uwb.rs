@@ -1,4 +1,4 @@
-//! The same five filters on a robot among four UWB anchors: a range is a measurement like any other.
+//! The five filters on a robot among four UWB anchors: a range is a measurement like any other.
 
 use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian};
 use kestirim_robust_kalman::{Block, Decision, Measurement, Reason, Robust};
@@ -12,7 +12,7 @@ const HEIGHT: f64 = 0.5;
 const SIGMA: f64 = 0.1;
 const STEP: f64 = 0.1;
 
-/// Marsaglia's xorshift: the same world on every machine.
+/// Marsaglia's xorshift, for the same noise on every machine.
 struct Random(u64);
 
 impl Random {
@@ -28,23 +28,25 @@ impl Random {
     }
 }
 
-/// A round trip through the room.
+/// Position of the robot on a round trip through the room, in metres.
 fn place(step: u32) -> Vector2<f64> {
     let angle = 0.05 * f64::from(step) * STEP * 5.0;
     Vector2::new(5.0 + 3.0 * angle.cos(), 4.0 + 2.0 * angle.sin())
 }
 
-/// What a filter came to.
+/// Result of a filter on one drive.
 #[derive(Clone, Copy, Debug, Default)]
 struct Drive {
     rmse: f64,
-    /// Ranges without a clear view that were rejected or weighed less, and all of them.
+    /// Number of rejected or down-weighted ranges among those with a detour, and the number of all
+    /// of these.
     caught: (u32, u32),
-    /// The same of the others.
+    /// Number of rejected or down-weighted ranges among the direct ones, and the number of all of
+    /// these.
     mistaken: (u32, u32),
 }
 
-/// One range in `one_in` takes a detour of up to 5 m.
+/// Drives through the room; one range in `one_in` takes a detour of up to 5 m.
 fn drive<T: Scalar>(robust: &Robust<T>, one_in: f64, seed: u64) -> Drive {
     let number = |value: f64| T::from_f64(value);
     let anchors = ANCHORS.map(|anchor| Vector3::from(anchor.map(number)));
@@ -122,7 +124,7 @@ fn check<T: Scalar>() {
     for rmse in [igg3, iterative, adaptive] {
         assert!(rmse < 0.2 * plain, "{rmse} of {plain}");
     }
-    // The mean and the deviation of three others are little to go by.
+    // The mean and the deviation of only three others tell little.
     assert!(t_test < 0.9 * plain, "{t_test} of {plain}");
     println!("the published equations");
     let published = Robust::<T>::iterative_igg3().published();

@@ -1,4 +1,5 @@
-//! Weight functions and Student's t, against published and scipy's numbers, in every number type.
+//! Weight functions and Student's t in every number type, compared with published values and
+//! scipy's.
 
 use kestirim_robust_kalman::{
     Adaptive, Block, Descent, Huber, Igg3, TTest, Weight, WeightFunction, student_quantile,
@@ -16,7 +17,7 @@ fn gamma<T: Scalar>(weight: &Weight<T>, statistic: f64) -> f64 {
 }
 
 fn check_values<T: Scalar>(tolerance: f64) {
-    // Eq. 15 as published and as Yang, Song and Xu (2002) have it, by hand: at 4, 2.5/4 · 2/3.5.
+    // Eq. 15 as published and as in Yang, Song and Xu (2002), by hand: at 4, 2.5/4 · 2/3.5.
     let cases = [
         (igg3(Descent::Published), [1.0, 1.0, 0.625 * 2.0 / 3.5, 0.0, 0.0]),
         (igg3(Descent::Squared), [1.0, 1.0, 0.625 * 4.0 / 12.25, 0.0, 0.0]),
@@ -38,7 +39,7 @@ fn weights_are_the_published_ones() {
     check_values::<Q16_16>(1e-4);
 }
 
-/// scipy.stats.t.ppf(1 − α/2, ν), scipy 1.17.1.
+/// Values of scipy.stats.t.ppf(1 − α/2, ν), scipy 1.17.1.
 const QUANTILES: [(f64, [(usize, f64); 8]); 4] = [
     (
         0.1,

@@ -1,17 +1,17 @@
-//! Division: a reciprocal by Newton's iteration, for one quotient or for many.
+//! Division by a reciprocal from Newton's iteration, for a single quotient or for many.
 
 use super::Fixed;
 use super::wide::unsigned_product;
 
 /// A fixed-point divisor as reciprocal, shift and sign.
 ///
-/// A plain reciprocal in the same format overflows for small divisors and loses digits for large
-/// ones; this one keeps 32 bits whatever the size.
+/// A plain reciprocal in the same format would overflow for small divisors and lose digits for large
+/// ones; this one keeps 32 bits for every divisor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedDivisor<const FRAC: u32> {
-    /// 2⁶³ / (the divisor's magnitude, shifted until its top bit is set).
+    /// 2⁶³ / (the divisor's magnitude, shifted left until its top bit is set).
     reciprocal: u32,
-    /// By how much a product with it is shifted down; 0 marks the divisor zero.
+    /// Number of bits by which a product with the reciprocal is shifted right; 0 marks a divisor of zero.
     shift: u32,
     negative: bool,
 }
@@ -42,7 +42,7 @@ impl<const FRAC: u32> FixedDivisor<FRAC> {
 }
 
 impl<const FRAC: u32> Fixed<FRAC> {
-    /// self / divisor to the nearest, halves away from zero.
+    /// self / divisor, rounded to nearest, halves away from zero.
     #[inline]
     pub(super) fn quotient(self, divisor: Self) -> Self {
         let prepared = FixedDivisor::new(divisor);
@@ -66,7 +66,7 @@ impl<const FRAC: u32> Fixed<FRAC> {
     }
 }
 
-/// Quotient of a division by zero: the rail of the dividend's sign, the lower one for 0/0.
+/// The quotient of a division by zero: the rail of the dividend's sign, and the lower one for 0/0.
 fn over_zero<const FRAC: u32>(dividend: Fixed<FRAC>) -> Fixed<FRAC> {
     Fixed(if dividend.to_bits() > 0 { i32::MAX } else { i32::MIN })
 }
@@ -81,9 +81,9 @@ fn with_sign<const FRAC: u32>(magnitude: u64, negative: bool) -> Fixed<FRAC> {
     })
 }
 
-/// 2⁶³/m for 2³¹ ≤ m < 2³², never above it and at most two below.
+/// 2⁶³/m for 2³¹ ≤ m < 2³², never too large and at most two units too small.
 ///
-/// A parabola and three Newton steps r ← r + r·(1 − m·r), each with just the bits it needs: a quarter of
+/// A parabola and three Newton steps r ← r + r·(1 − m·r), each with only the bits it needs: a quarter of
 /// the instructions of a 64-bit division on ARMv6-M.
 #[inline(always)]
 pub(super) fn reciprocal(m: u32) -> u32 {

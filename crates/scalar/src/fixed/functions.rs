@@ -1,29 +1,29 @@
 //! Elementary functions in integers.
 //!
-//! Each reduces its argument to an interval around zero, or from zero to one, where a short polynomial
-//! (Remez's minimax) is evaluated by Horner's rule in upper halves of 64-bit products. So the error does
-//! not depend on FRAC, as long as FRAC can show it.
+//! Each reduces its argument to an interval around zero, or from zero to one, where a short minimax polynomial
+//! (by Remez's algorithm) is evaluated by Horner's rule in the upper halves of 64-bit products. So the error does
+//! not depend on FRAC, as long as FRAC can resolve it.
 
 use super::Fixed;
 use super::divisor::reciprocal;
 use super::wide::{high, product, unsigned_high, unsigned_product};
 
 impl<const FRAC: u32> Fixed<FRAC> {
-    /// (sin, cos) within 4·10⁻⁸ and half a unit.
+    /// (sin, cos) within 4·10⁻⁸ plus half a unit in the last place.
     #[inline]
     pub(super) fn sine_cosine(self) -> (Self, Self) {
-        // 2⁶⁴/2π: a full turn is 64 bits, and what wraps around is whole turns.
+        // 2⁶⁴/2π: a full turn is 64 bits, so whole turns wrap around.
         const TURN: u64 = 2_935_890_503_282_001_226;
         let turn = (TURN >> FRAC) + ((TURN >> (FRAC - 1)) & 1);
         let x = self.0 as u32;
         let low = unsigned_product(x, turn as u32);
-        // The sign of x counts −2³² times the constant.
+        // The sign bit of x counts for −2³² times the constant.
         let sign = if self.0 < 0 { turn as u32 } else { 0 };
         let phase = ((low >> 32) as u32)
             .wrapping_add(x.wrapping_mul((turn >> 32) as u32))
             .wrapping_sub(sign);
         let quadrant = phase.wrapping_add(1 << 29) >> 30;
-        // An eighth of a turn to either side of the quadrant's axis, in Q32 quarter turns.
+        // The offset from the quadrant's axis, up to an eighth of a turn to either side, in Q32 quarter turns.
         let u = (phase.wrapping_sub(quadrant << 30) << 2) as i32;
         let z = high(u, u);
         let sine = high(
@@ -37,12 +37,12 @@ impl<const FRAC: u32> Fixed<FRAC> {
         (Self::rescaled(sine, 30), Self::rescaled(cosine, 30))
     }
 
-    /// The angle of (x, y) within 3·10⁻⁷ and half a unit.
+    /// The angle of (x, y) within 3·10⁻⁷ plus half a unit in the last place.
     #[inline]
     pub(super) fn arc_tangent(y: Self, x: Self) -> Self {
         /// π in Q29.
         const PI: i32 = 1_686_629_713;
-        /// Coefficients of odd powers, highest first, in Q30.
+        /// Coefficients of the odd powers, highest first, in Q30.
         const C: [i32; 7] = [
             468_102_589,
             -1_154_631_809,
@@ -69,12 +69,12 @@ impl<const FRAC: u32> Fixed<FRAC> {
         Self::rescaled(if y.0 < 0 { -angle } else { angle }, 29)
     }
 
-    /// eˣ within 10⁻⁷ of itself and half a unit.
+    /// eˣ with a relative error within 10⁻⁷, plus half a unit in the last place.
     #[inline]
     pub(super) fn exponential(self) -> Self {
         /// log₂ e in Q30.
         const LOG2_E: i32 = 1_549_082_005;
-        /// 2ᵖ − 1 without its factor p, highest power first, in Q31.
+        /// Coefficients of (2ᵖ − 1)/p, highest power first, in Q31.
         const C: [i32; 5] = [64_154_107, 154_911_395, 479_317_606, 1_031_498_459, 1_488_531_108];
         // x·log₂e = whole + part; 2^whole is a shift.
         let power = product(self.0, LOG2_E);
@@ -91,7 +91,7 @@ impl<const FRAC: u32> Fixed<FRAC> {
         })
     }
 
-    /// ln x within 3·10⁻⁷ and half a unit.
+    /// ln x within 3·10⁻⁷ plus half a unit in the last place.
     #[inline]
     pub(super) fn logarithm(self) -> Self {
         if self.0 <= 0 {
@@ -103,7 +103,7 @@ impl<const FRAC: u32> Fixed<FRAC> {
         Self::rescaled(((part + 8) >> 4) + whole * LN_2, 26)
     }
 
-    /// The logarithm of a vector's length within 2·10⁻⁷ and half a unit.
+    /// The natural logarithm of a vector's length within 2·10⁻⁷ plus half a unit in the last place.
     #[inline]
     pub(super) fn log_length(components: &[Self]) -> Self {
         let square = Self::square_length(components);
@@ -113,7 +113,7 @@ impl<const FRAC: u32> Fixed<FRAC> {
         let zeros = square.leading_zeros();
         let (whole, part) = split_logarithm(((square << zeros) >> 32) as u32);
         let whole = whole + 63 - zeros as i32 - 2 * FRAC as i32;
-        // Half of it is the root's.
+        // The root halves the logarithm of the square.
         Self::rescaled(((part + 16) >> 5) + whole * (LN_2 / 2), 26)
     }
 }
@@ -121,12 +121,12 @@ impl<const FRAC: u32> Fixed<FRAC> {
 /// ln 2 in Q26.
 const LN_2: i32 = 46_516_320;
 
-/// Logarithm of a number from 1 to 2 in Q31: multiples of ln 2, and the remainder in Q30.
+/// The logarithm of a number from 1 to 2 in Q31, as a multiple of ln 2 and a remainder in Q30.
 ///
-/// Where the number's half is nearer to 1, that is taken.
+/// Where half of the number is nearer to 1, the remainder is the logarithm of that half.
 #[inline]
 fn split_logarithm(mantissa: u32) -> (i32, i32) {
-    /// ln(1 + t) without its factor t, highest power first, in Q30.
+    /// Coefficients of ln(1 + t)/t, highest power first, in Q30.
     const C: [i32; 7] = [
         126_996_643,
         -202_958_491,

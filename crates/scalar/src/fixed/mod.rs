@@ -15,25 +15,25 @@ use core::fmt;
 ///
 /// The value is bits · 2⁻ᶠᴿᴬᶜ. Every operation rounds to nearest and saturates at the two rails
 /// ([`i32::MIN`] and [`i32::MAX`] bits); a number on a rail has overflowed and is not
-/// [finite](crate::Scalar::is_finite). Products and quotients pass through 64 bits and are rounded once.
+/// [finite](crate::Scalar::is_finite). Products and quotients are computed in 64 bits and rounded once.
 ///
-/// With `serde` it is its bits, which is exact and four bytes in postcard; both sides must agree on
-/// `FRAC`.
+/// With `serde` its bits are serialised, which is exact and takes one to five bytes in postcard; both sides must agree
+/// on `FRAC`.
 #[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(transparent))]
 #[repr(transparent)]
 pub struct Fixed<const FRAC: u32>(i32);
 
-/// ±32 768 in steps of 1.5·10⁻⁵.
+/// Fixed point over ±32 768 in steps of 1.5·10⁻⁵.
 pub type Q16_16 = Fixed<16>;
-/// ±2048 in steps of 9.5·10⁻⁷.
+/// Fixed point over ±2048 in steps of 9.5·10⁻⁷.
 pub type Q12_20 = Fixed<20>;
-/// ±128 in steps of 6·10⁻⁸.
+/// Fixed point over ±128 in steps of 6·10⁻⁸.
 pub type Q8_24 = Fixed<24>;
 
 impl<const FRAC: u32> Fixed<FRAC> {
-    /// 2ᶠᴿᴬᶜ, the bits of one.
+    /// 2ᶠᴿᴬᶜ, the bits of the number one.
     const SCALE: i32 = {
         assert!(1 <= FRAC && FRAC <= 30, "half and one must be representable");
         1 << FRAC
@@ -51,7 +51,7 @@ impl<const FRAC: u32> Fixed<FRAC> {
         self.0
     }
 
-    /// Nearest, saturating.
+    /// The number of these bits, saturating.
     #[inline]
     const fn saturate(bits: i64) -> Self {
         if bits > i32::MAX as i64 {

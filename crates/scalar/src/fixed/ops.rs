@@ -1,4 +1,4 @@
-//! Arithmetic: rounding to nearest, saturating, never panicking.
+//! Arithmetic that rounds to nearest, saturates and never panics.
 
 use super::Fixed;
 use super::wide::product;
@@ -39,7 +39,7 @@ impl<const FRAC: u32> Mul for Fixed<FRAC> {
 
 impl<const FRAC: u32> Div for Fixed<FRAC> {
     type Output = Self;
-    /// Rounds half away from zero; by zero it gives the rail of the dividend's sign, the lower one for 0/0.
+    /// Rounds half away from zero. Division by zero gives the rail of the dividend's sign, and the lower one for 0/0.
     #[inline]
     fn div(self, divisor: Self) -> Self {
         self.quotient(divisor)

@@ -21,7 +21,7 @@ impl<const FRAC: u32> Fixed<FRAC> {
 
     #[inline]
     pub(super) fn length(components: &[Self]) -> Self {
-        // Beyond 2⁶² the root is beyond the rail.
+        // Beyond 2⁶² the root is above the upper rail.
         let square = Self::square_length(components).min(1 << 62);
         Self(i32::try_from(nearest_root(square)).unwrap_or(i32::MAX))
     }
@@ -38,9 +38,10 @@ impl<const FRAC: u32> Fixed<FRAC> {
     }
 }
 
-/// √n to the nearest integer, n ≤ 2⁶³.
+/// √n rounded to the nearest integer, for n ≤ 2⁶³.
 ///
-/// A parabola for 1/√x and Newton steps with just the bits they need, the last one for √x itself.
+/// A parabola approximates 1/√x; Newton steps, each with only the bits it needs, refine it, the
+/// last one for √x itself.
 #[inline]
 fn nearest_root(n: u64) -> u32 {
     if n == 0 {
@@ -58,7 +59,7 @@ fn nearest_root(n: u64) -> u32 {
     // Within 1.4·10⁻⁶; 30 fractional bits.
     let error = (1 << 30) - unsigned_high(x, y * y) as i32;
     let y = (y << 15).wrapping_add_signed((y as i32 * (error >> 7)) >> 9);
-    // √x = x·y, and the same step once more: all bits, at most one below.
+    // √x = x·y, refined by the same step once more: all bits, at most one unit too small.
     let root = unsigned_high(x, y) << 2;
     let error = (scaled.wrapping_sub(unsigned_product(root, root)) as i64 >> 31) as i32;
     let root = root.wrapping_add_signed((error * (y >> 16) as i32) >> 16) >> half_zeros;

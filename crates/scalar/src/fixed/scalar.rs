@@ -1,11 +1,11 @@
-//! The trait for fixed point.
+//! The implementation of [`Scalar`] for fixed point.
 
 use super::wide::product;
 use super::{Fixed, FixedDivisor};
 use crate::Scalar;
 
 impl<const FRAC: u32> Fixed<FRAC> {
-    /// 2ᶠᴿᴬᶜ as doubles: factors of conversion.
+    /// 2ᶠᴿᴬᶜ as a double, the factor of conversions.
     const TO_BITS: f64 = Self::SCALE as f64;
 
     #[inline(always)]
@@ -33,14 +33,14 @@ fn shifted(value: i32, by: i32) -> i32 {
     }
 }
 
-/// The rail of a sign.
+/// The rail on the side of the sign of `value`.
 #[inline(always)]
 fn saturation(value: i32) -> i32 {
     if value < 0 { i32::MIN } else { i32::MAX }
 }
 
 impl<const FRAC: u32> Scalar for Fixed<FRAC> {
-    /// The sum in units of 2⁻²ᶠᴿᴬᶜ: two products of rails fit; beyond them it saturates.
+    /// A sum in units of 2⁻²ᶠᴿᴬᶜ: two products of rails fit; beyond that it saturates.
     type Accumulator = i64;
     type Divisor = FixedDivisor<FRAC>;
 
@@ -63,12 +63,12 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
     }
     #[inline]
     fn from_f32(value: f32) -> Self {
-        // Integers only, from the float's own fields: a soft float would cost ten times as much.
+        // Uses integers only, from the fields of the float: software floating point would cost ten times as much.
         let (bits, negative) = (value.to_bits() & 0x7FFF_FFFF, value.is_sign_negative());
         if value.is_nan() {
             return Self(i32::MIN);
         }
-        // A subnormal rounds to zero all the same.
+        // A subnormal number rounds to zero in any case.
         let mantissa = (bits & 0x7F_FFFF) | 0x80_0000;
         let shift = (bits >> 23) as i32 - 150 + FRAC as i32;
         let magnitude = match shift {
@@ -186,8 +186,8 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
 
     #[inline]
     fn headroom(exponent: i32) -> Option<u32> {
-        // Coefficients of 2³¹ bits in all and factors of 2³¹ make sums up to 2⁶²; what a rounding leaves may take
-        // as many.
+        // Coefficients of 31 bits in all and factors of 31 bits make sums of up to 2⁶²; the remainder of a rounding may
+        // be as large.
         u32::try_from(31 - FRAC as i32 - exponent).ok().map(|bits| bits.min(62 - FRAC))
     }
     #[inline(always)]

@@ -1,36 +1,36 @@
-//! Products of 64 bits, rounded back to 32.
+//! Products of 64 bits, and rounding back to 32.
 
 use super::Fixed;
 
-/// ARMv6-M multiplies 32 bits by 32 to 32. There four products of halves cost two thirds of the
-/// compiler's general 64-bit multiplication.
+/// Whether to multiply by halves. ARMv6-M only multiplies 32 bits by 32 to 32; there, four products of halves cost two
+/// thirds of the compiler's general 64-bit multiplication.
 const BY_HALVES: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
 
-/// a · b, exactly.
+/// The exact product a · b of signed numbers.
 #[inline(always)]
 pub(super) fn product(a: i32, b: i32) -> i64 {
     if BY_HALVES { product_by_halves(a, b) } else { i64::from(a) * i64::from(b) }
 }
 
-/// a · b, exactly.
+/// The exact product a · b of unsigned numbers.
 #[inline(always)]
 pub(super) fn unsigned_product(a: u32, b: u32) -> u64 {
     if BY_HALVES { unsigned_product_by_halves(a, b) } else { u64::from(a) * u64::from(b) }
 }
 
-/// The upper half of a · b.
+/// The upper half of the product a · b of signed numbers.
 #[inline(always)]
 pub(super) fn high(a: i32, b: i32) -> i32 {
     (product(a, b) >> 32) as i32
 }
 
-/// The upper half of a · b.
+/// The upper half of the product a · b of unsigned numbers.
 #[inline(always)]
 pub(super) fn unsigned_high(a: u32, b: u32) -> u32 {
     (unsigned_product(a, b) >> 32) as u32
 }
 
-/// Warren, Hacker's Delight (2nd ed.), 8–2.
+/// The exact product by halves: Warren, Hacker's Delight (2nd ed.), 8–2.
 #[inline(always)]
 fn product_by_halves(a: i32, b: i32) -> i64 {
     let (a_low, a_high) = (a & 0xFFFF, a >> 16);
@@ -42,29 +42,29 @@ fn product_by_halves(a: i32, b: i32) -> i64 {
     (i64::from(high) << 32) | i64::from(a.wrapping_mul(b) as u32)
 }
 
-/// The same without signs, yet by way of them: LLVM 22 recognises halves without signs as a product, and calls
-/// the general multiplication, which they were to avoid.
+/// The exact unsigned product, by way of the signed one: LLVM 22 recognises unsigned halves as a product, and calls
+/// the general multiplication that they were meant to avoid.
 #[inline(always)]
 fn unsigned_product_by_halves(a: u32, b: u32) -> u64 {
     let signed = product_by_halves(a as i32, b as i32);
     let a_negative = (a as i32 >> 31) as u32;
     let b_negative = (b as i32 >> 31) as u32;
-    // A number read as negative is 2³² too small.
+    // A number read as negative is too small by 2³².
     let high = ((signed >> 32) as u32).wrapping_add(a_negative & b).wrapping_add(b_negative & a);
     (u64::from(high) << 32) | u64::from(a.wrapping_mul(b))
 }
 
 impl<const FRAC: u32> Fixed<FRAC> {
-    /// From a value with 2·FRAC fractional bits: rounded once, saturating.
+    /// Converts a value with 2·FRAC fractional bits: rounded once, saturating.
     #[inline(always)]
     pub(super) fn narrowed(sum: i64) -> Self {
         let rounded = ((sum >> (FRAC - 1)) + 1) >> 1;
         let (low, high) = (rounded as i32, (rounded >> 32) as i32);
-        // It fits if the upper half is nothing but the sign.
+        // The result fits if the upper half is a sign extension.
         Self(if high == low >> 31 { low } else { (high >> 31) ^ i32::MAX })
     }
 
-    /// From a value with `from` fractional bits: rounded, saturating.
+    /// Converts a value with `from` fractional bits: rounded, saturating.
     #[inline(always)]
     pub(super) fn rescaled(value: i32, from: u32) -> Self {
         Self(match FRAC.checked_sub(from) {

@@ -1,10 +1,10 @@
-//! Every elementary function against f64 over its whole domain, edges included. The bounds asserted are
+//! Every elementary function compared with f64 over its whole domain, edges included. The bounds asserted are
 //! those of the crate's documentation.
 
 use kestirim_scalar::{Fixed, Q8_24, Q12_20, Q16_16, Scalar};
 
-/// Bits over the whole range of an i32: both rails, every power of two and its neighbours, small numbers one
-/// by one, and 200 000 spread evenly.
+/// Bits over the whole range of an i32: both rails, every power of two and its neighbours, all small numbers,
+/// and 200 000 spread evenly.
 fn all_sizes() -> impl Iterator<Item = i32> {
     let edges = [i32::MIN, i32::MIN + 1, i32::MAX, i32::MAX - 1];
     let powers = (0..31).flat_map(|k| [(1 << k) - 1, 1 << k, (1 << k) + 1]).flat_map(|b| [b, -b]);
@@ -13,7 +13,7 @@ fn all_sizes() -> impl Iterator<Item = i32> {
     edges.into_iter().chain(powers).chain(small).chain(spread)
 }
 
-/// Asserts |ours − exact| ≤ absolute + relative·|exact| + ½ LSB; what is out of range must be on its rail.
+/// Asserts |ours − exact| ≤ absolute + relative·|exact| + ½ LSB, and that values out of range are on their rail.
 #[track_caller]
 fn assert_near<const FRAC: u32>(
     ours: Fixed<FRAC>,
@@ -259,7 +259,7 @@ fn the_logarithm_of_a_norm_needs_no_norm() {
     check_ln_norm::<Fixed<8>>(0.51 / 256.0);
     check_ln_norm::<Q16_16>(0.51 / 65_536.0);
     check_ln_norm::<Q12_20>(0.51 / 1_048_576.0);
-    // The norm is beyond the format, its logarithm is not.
+    // The norm is out of range, but its logarithm is not.
     let rails = Q16_16::ln_norm(&[Q16_16::MIN; 4]);
     assert!((rails.to_f64() - 65_536_f64.ln()).abs() < 1e-4);
     let least = Q8_24::ln_norm(&[Q8_24::EPSILON, Q8_24::ZERO]);
@@ -273,7 +273,7 @@ fn a_norm_in_single_precision_is_good_to_the_last_place() {
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX] {
         assert!(!f32::norm(&[1.0, bad]).is_finite());
     }
-    // Through two octaves value by value is through all of them, from 10⁻¹⁸ to 10¹⁸.
+    // Two octaves, value by value, cover all of them, here from 10⁻¹⁸ to 10¹⁸.
     for octave in [0.25_f32, 1e-18, 1e18] {
         for step in 0..1 << 22 {
             let x = octave * (1.0 + step as f32 / f32::from(1_u16 << 11) / 512.0);
@@ -287,7 +287,7 @@ fn a_norm_in_single_precision_is_good_to_the_last_place() {
 fn a_rounding_bounds_what_arithmetic_loses() {
     assert_eq!(1.0_f32.rounding(4), 4.0 * f32::EPSILON);
     assert_eq!((-2.0_f64).rounding(1), 2.0 * f64::EPSILON);
-    // Half a unit in the last place each, rounded up; more where a factor's error is magnified.
+    // Half a unit in the last place each, rounded up in all; more where the error of a factor is magnified.
     assert_eq!(Q12_20::from_f64(0.5).rounding(3).to_bits(), 2);
     assert_eq!(Q12_20::from_f64(-3.0).rounding(4).to_bits(), 8);
     assert!(Q12_20::MIN.rounding(u16::MAX) > Q12_20::ZERO);

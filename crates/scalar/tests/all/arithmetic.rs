@@ -1,4 +1,4 @@
-//! Fixed-point arithmetic against wide integers, whatever the bits.
+//! Fixed-point arithmetic compared with wide integers, for any bits.
 
 use kestirim_scalar::{Fixed, Q12_20, Q16_16, Scalar};
 use nalgebra::SMatrix;
@@ -8,7 +8,7 @@ fn saturated(bits: i128) -> i32 {
     bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }
 
-/// Round half up, as a shift after adding the half does.
+/// Rounds half up, like a shift after adding half.
 fn rounded_shift(value: i128, shift: u32) -> i128 {
     if shift == 0 { value } else { (value + (1 << (shift - 1))) >> shift }
 }
@@ -44,7 +44,7 @@ proptest! {
         check_arithmetic::<30>(a, b);
     }
 
-    /// The value that a step shows and what it keeps are together what was there before, exactly.
+    /// The new value and the remainder kept are together exactly the old value and the sum.
     #[test]
     fn an_advance_loses_nothing(value in -1_000_000_i32..1_000_000, sum in any::<i64>(), scale in 0_u32..99) {
         let sum = sum >> 2;
@@ -136,7 +136,7 @@ fn a_million_steps_below_the_last_place_add_up() {
         }
         place.to_f64()
     }
-    // A step is a tenth of the last place of Q16.16 at 40, and less of that of an f32.
+    // A step is a tenth of the last place of Q16.16 at 40, and less than that of an f32.
     assert!((walk(Q16_16::from_f64(1.5), 20) - (40.0 + 1.5e6 / 1_048_576.0)).abs() < 1.6e-5);
     assert!((walk(1.5e-6_f32, 0) - 41.5).abs() < 4e-6);
 }

@@ -1,4 +1,4 @@
-//! Tests of the crate from outside, in one program: less is compiled and linked.
+//! Tests of the crate's public interface, in one program so that less is compiled and linked.
 
 mod accuracy;
 mod arithmetic;

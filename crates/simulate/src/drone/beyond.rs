@@ -1,4 +1,4 @@
-//! Beyond the thesis: what it names as future work, and what real measurements are like.
+//! Experiments beyond the thesis: those it names as future work, and those with realistic measurements.
 
 use kestirim_air_to_ground::{Contaminated, Likelihood, Measurement};
 use kestirim_particle_filter::{Region, Resampler, Xoshiro128PlusPlus};
@@ -12,36 +12,36 @@ use super::scenario::measure;
 use super::trajectory::{SIDE_M, Trajectory};
 use crate::random::{stream, uniform};
 
-/// Points of a lattice of places and levels.
+/// The number of points of a lattice over positions and levels.
 const POINTS: usize = 1500;
-/// Points of a lattice of places.
+/// The number of points of a lattice over positions.
 const PLACES: usize = 500;
-/// Measurements of a user who stays.
+/// The number of measurements of a stationary user.
 const STOPS: u32 = 12;
-/// From where, m.
+/// The height of the drone, m.
 const HEIGHT_M: f64 = 800.0;
-/// Users that one drone follows.
+/// The number of users that one drone follows.
 const USERS: usize = 3;
 
-/// An experiment with a user who stays, measured twelve times from the circle at 800 m.
+/// An experiment with a stationary user, who is measured twelve times from the circle at 800 m.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stay {
-    /// Every twentieth measurement is anything within ±40 dB; the filter does not know.
+    /// Every twentieth measurement is off by anything within ±40 dB; the filter does not know.
     WildPlain,
-    /// The same with a robust likelihood.
+    /// Every twentieth measurement is off by anything within ±40 dB; the filter has a robust likelihood.
     WildRobust,
-    /// The transmitter's level is known to ±10 dB only, and the filter takes it for known.
+    /// The transmitter's level is only known to ±10 dB, but the filter takes it for known.
     LevelIgnored,
-    /// The same with the level as third coordinate.
+    /// The transmitter's level is only known to ±10 dB; the filter estimates it as a third coordinate.
     LevelEstimated,
 }
 
 impl Stay {
-    /// All of them.
+    /// All experiments.
     pub const ALL: [Self; 4] =
         [Self::WildPlain, Self::WildRobust, Self::LevelIgnored, Self::LevelEstimated];
 
-    /// What it shows.
+    /// A short description for tables.
     pub fn description(self) -> &'static str {
         match self {
             Self::WildPlain => "5 % wild measurements",
@@ -51,7 +51,7 @@ impl Stay {
         }
     }
 
-    /// Error of one trial, m.
+    /// The position error of one trial, m.
     ///
     /// # Panics
     /// Never: shares are below one, and regions are boxes.
@@ -99,13 +99,13 @@ fn locate<C: Likelihood<f64>, const L: usize, const D: usize>(
     let region = Region::new(low, high).expect("a box");
     let mut locator = Box::new(Locator::<f64, L, { STOPS as usize }, D, C>::new(channel, &region));
     for measurement in measurements {
-        // What nothing explains is left out.
+        // A measurement that no point explains is left out.
         let _ = locator.measure(measurement);
     }
     locator.moments().mean()
 }
 
-/// Walks of one user with other policies than the thesis' or with a channel that is not quite the filter's.
+/// Walks of one user with policies other than the thesis', or with a channel that differs slightly from the filter's.
 pub fn walks() -> Vec<(&'static str, Walk)> {
     let hover = Walk::thesis(Policy::Hover(Resampler::Systematic));
     let orbit = Walk::thesis(Policy::Orbit);
@@ -122,8 +122,8 @@ pub fn walks() -> Vec<(&'static str, Walk)> {
     ]
 }
 
-/// Three users on circles of their own, one filter each, one drone: it goes round the user of whom least is known.
-/// Mean error of all users, m.
+/// Follows three users on circles of their own with one drone and one filter each; the drone orbits the user whose
+/// position is least certain. Returns the mean error over all users, m.
 ///
 /// # Panics
 /// Never: its intervals are above zero.
@@ -155,7 +155,7 @@ pub fn several_users(seed: u64, index: u64) -> f64 {
             }
             if let Ok(measurement) = Measurement::new(waypoint.place, waypoint.height, loss as f32)
             {
-                // What no particle explains leaves the cloud as it was.
+                // A measurement that no particle explains leaves the cloud unchanged.
                 let _ = filter.measure(&measurement, &mut rng);
             }
             errors.push(distance(user, filter.estimate().place.map(f64::from)));

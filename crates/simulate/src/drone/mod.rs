@@ -1,4 +1,4 @@
-//! Synthetic users, what a drone measures of them, and where it flies.
+//! Synthetic users, the drone's measurements of them, and its flight paths.
 
 pub mod beyond;
 pub mod moving_user;

@@ -1,4 +1,4 @@
-//! One trial of a user who walks a circle, and of a drone that follows.
+//! One trial with a user who walks in a circle and a drone that follows.
 
 use std::f64::consts::TAU;
 
@@ -17,50 +17,50 @@ use super::scenario::measure;
 use super::static_user::MOST;
 use crate::random::{normal, stream, uniform};
 
-/// Side of the square, m.
+/// The side of the square that holds the user, m.
 pub const SIDE_M: f64 = 4000.0;
-/// Filters of no more particles than this are kept in less memory, which stays in the cache.
+/// Filters with at most this many particles get a smaller buffer, which stays in the cache.
 const FEW: usize = 1024;
-/// From one measurement to the next, s: the thesis counts steps. With its five seconds of hovering a measurement
-/// the user of most of its figures walks at 2.5 m/s.
+/// The time between measurements, s. The thesis counts in steps; with its five seconds of hovering per measurement the
+/// user of most of its figures walks at 2.5 m/s.
 pub const INTERVAL_S: f64 = 5.0;
-/// Errors from here on count as lost, m.
+/// The error from which the user counts as lost, m.
 pub const LOST_M: f64 = 300.0;
 
-/// What the drone does.
+/// The drone's flight policy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Policy {
-    /// The thesis: its cloud, and the drone flies to the estimate (Table 3.5).
+    /// The thesis' filter; the drone flies to the estimate and hovers (Table 3.5).
     Hover(Resampler),
-    /// Round the estimate of a cloud whose particles know their velocity.
+    /// The drone orbits the estimate of a particle filter with velocities.
     Orbit,
-    /// The same, low when it knows where the user is and high when not.
+    /// The drone orbits as with `Orbit`, low when the user's position is certain and high when it is not.
     OrbitLow,
 }
 
-/// One cell of the sweeps.
+/// The parameters of one cell of the sweeps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walk {
-    /// Particles L.
+    /// The number of particles L.
     pub particles: usize,
-    /// Height of the drone, m.
+    /// The height of the drone, m.
     pub height_m: f64,
-    /// Radius of the user's circle, m.
+    /// The radius of the user's circle, m.
     pub user_radius_m: f64,
-    /// Steps in which it is walked.
+    /// The number of steps in which the circle is walked.
     pub end_time: u32,
-    /// What is built on the ground.
+    /// The kind of buildings on the ground.
     pub environment: EnvironmentKind,
-    /// What the drone does.
+    /// The drone's flight policy.
     pub policy: Policy,
-    /// Noise that the channel does not know of, dB.
+    /// The standard deviation of additional noise that the filter's channel does not include, dB.
     pub unknown_noise_db: f64,
-    /// The smallest deviation that the filter believes, dB.
+    /// The smallest standard deviation that the filter assumes, dB.
     pub least_sigma_db: Option<f64>,
 }
 
 impl Walk {
-    /// What most of the thesis' figures were made with.
+    /// The parameters of most of the thesis' figures.
     pub const fn thesis(policy: Policy) -> Self {
         Self {
             particles: 1000,
@@ -74,49 +74,50 @@ impl Walk {
         }
     }
 
-    /// Jitter of the thesis' filter, which does not print it, m. It must exceed the user's step, or the cloud stays
-    /// behind.
+    /// The jitter of the thesis' filter, m, which the thesis does not state. It must exceed the user's step, or the
+    /// cloud falls behind.
     pub fn jitter_m(&self) -> f64 {
         let step = TAU * self.user_radius_m / f64::from(self.end_time);
         (1.27 * step).max(16.0)
     }
 }
 
-/// What came out of a trial.
+/// The result of a trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outcome {
-    /// Mean error over all steps, m.
+    /// The mean error over all steps, m.
     pub error_m: f64,
-    /// How far the drone flew: without hovering, as in the thesis.
+    /// The distance flown: without hovering, as in the thesis.
     pub flown: Flown,
 }
 
 impl Outcome {
-    /// Names of its [`numbers`](Self::numbers).
+    /// The names of the [`numbers`](Self::numbers).
     pub const COLUMNS: [&'static str; 4] = ["error_m", "path_m", "climb_m", "hover_s"];
 
-    /// As a row of numbers.
+    /// The outcome as a row of numbers.
     pub fn numbers(&self) -> [f64; Self::COLUMNS.len()] {
         let Flown { path_m, climb_m, hover_s } = self.flown;
         [self.error_m, path_m, climb_m, hover_s]
     }
 
-    /// From a row of numbers.
+    /// The outcome that a row of numbers stands for.
     pub fn of_numbers([error_m, path_m, climb_m, hover_s]: [f64; Self::COLUMNS.len()]) -> Self {
         Self { error_m, flown: Flown { path_m, climb_m, hover_s } }
     }
 }
 
-/// A filter with the drone's rule of where to go.
+/// A filter together with a rule for the drone's next waypoint.
 trait Follower {
-    /// Takes in a loss measured at a waypoint, and says where the user is and where to go.
+    /// Updates the filter with a loss measured at a waypoint; returns the estimate of the user's position and the next
+    /// waypoint.
     fn step(&mut self, from: Waypoint<f64>, loss_db: f64) -> ([f64; 2], Waypoint<f64>);
 
-    /// What it believes.
+    /// The current particle cloud.
     fn cloud(&self) -> Cloud;
 }
 
-/// One user, one flight.
+/// Simulates one flight with one user.
 pub fn trial(walk: &Walk, scalar: ScalarKind, seed: u64, index: u64) -> Outcome {
     match (scalar, walk.particles <= FEW) {
         (ScalarKind::F32, true) => with_scalar::<f32, FEW>(walk, seed, index),
@@ -128,7 +129,7 @@ pub fn trial(walk: &Walk, scalar: ScalarKind, seed: u64, index: u64) -> Outcome 
     }
 }
 
-/// The same flight as [`trial`]'s, in double precision, step by step.
+/// The flight of [`trial`] in double precision, recorded step by step.
 pub fn track(walk: &Walk, seed: u64, index: u64) -> Track {
     let mut track = Track::default();
     let mut watch = |step: &Step<'_>| {
@@ -144,7 +145,7 @@ pub fn track(walk: &Walk, seed: u64, index: u64) -> Track {
     Track { flown: Some(outcome.flown), ..track }
 }
 
-/// What a flight shows to who watches it.
+/// One step of a flight, as an observer sees it.
 struct Step<'a> {
     waypoint: Waypoint<f64>,
     user: [f64; 2],
@@ -195,11 +196,11 @@ fn fly<T: Scalar, const L: usize>(
     Outcome { error_m: mean(&errors), flown }
 }
 
-/// The thesis' filter: the drone hovers over its estimate.
+/// The thesis' filter, with which the drone hovers above its estimate.
 struct Hovering<T: Scalar, const L: usize> {
     filter: PublishedLocator<T, L>,
     rng: Xoshiro128PlusPlus,
-    /// Effective number of particles after the last measurement.
+    /// The effective number of particles after the last measurement.
     effective: T,
 }
 
@@ -222,7 +223,7 @@ impl<T: Scalar, const L: usize> Hovering<T, L> {
 impl<T: Scalar, const L: usize> Follower for Hovering<T, L> {
     fn step(&mut self, from: Waypoint<f64>, loss_db: f64) -> ([f64; 2], Waypoint<f64>) {
         if let Some(measurement) = measurement(from, loss_db) {
-            // What no particle explains leaves the cloud as it was.
+            // A measurement that no particle explains leaves the cloud unchanged.
             let update = self.filter.measure(&measurement, &mut self.rng);
             self.effective = update.map_or(T::ZERO, |update| update.effective);
         }
@@ -235,13 +236,13 @@ impl<T: Scalar, const L: usize> Follower for Hovering<T, L> {
     }
 }
 
-/// Ours: the drone circles the estimate.
+/// Our filter, with which the drone orbits the estimate.
 struct Orbiting<T: Scalar, const L: usize> {
     tracker: Tracker<T, L>,
     orbit: Orbit<T>,
     rng: Xoshiro128PlusPlus,
     begun: bool,
-    /// Effective number of particles after the last measurement.
+    /// The effective number of particles after the last measurement.
     effective: T,
 }
 
@@ -259,7 +260,7 @@ impl<T: Scalar, const L: usize> Orbiting<T, L> {
     }
 }
 
-/// What is assumed of the user's motion, with the deviation (dB) of the best measurements.
+/// The assumed motion of the user, with the standard deviation of the best measurements, dB.
 fn motion<T: Scalar>(least_sigma_db: Option<f64>) -> Motion<T> {
     match least_sigma_db {
         Some(sigma) => Motion::people_measured_to(T::from_f64(sigma)),
@@ -275,7 +276,7 @@ impl<T: Scalar, const L: usize> Follower for Orbiting<T, L> {
         }
         self.begun = true;
         if let Some(measurement) = measurement(from, loss_db) {
-            // What no particle explains leaves the cloud as it was.
+            // A measurement that no particle explains leaves the cloud unchanged.
             let update = self.tracker.measure(&measurement, &mut self.rng);
             self.effective = update.map_or(T::ZERO, |update| update.effective);
         }
@@ -301,7 +302,7 @@ fn measurement<T: Scalar>(from: Waypoint<f64>, loss_db: f64) -> Option<Measureme
     Measurement::new(from.place.map(number), number(from.height), number(loss_db)).ok()
 }
 
-/// The square in which the filters look for the user.
+/// The square in which the filters search for the user.
 ///
 /// # Panics
 /// Never: there is a square of this side.

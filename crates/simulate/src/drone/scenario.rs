@@ -1,4 +1,4 @@
-//! What the drone measures, by the thesis' channel.
+//! Simulates the drone's measurements with the thesis' channel.
 
 use kestirim_air_to_ground::Channel;
 use kestirim_replay::metrics::distance;
@@ -6,8 +6,7 @@ use rand_core::Rng;
 
 use crate::random::{normal, uniform};
 
-/// A loss that the drone measures above `place` at `height_m`, dB: with or without a line of sight by
-/// chance.
+/// A path loss measured at height `height_m` above `place`, dB: with or without a line of sight, at random.
 ///
 /// # Panics
 /// The drone is not above the ground, or a place is nowhere.

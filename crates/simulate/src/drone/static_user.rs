@@ -1,4 +1,4 @@
-//! A user who stays, measured from a circle or a grid.
+//! A stationary user, measured from a circle or a grid.
 
 use kestirim_air_to_ground::{Measurement, Rotor};
 use kestirim_particle_filter::{Region, Resampler, Xoshiro128PlusPlus};
@@ -12,36 +12,36 @@ use super::scenario::measure;
 use super::trajectory::{SIDE_M, Trajectory};
 use crate::random::{stream, uniform};
 
-/// Most particles of a filter.
+/// The largest number of particles of a filter.
 pub const MOST: usize = 4096;
-/// Most measurements that a lattice remembers.
+/// The largest number of measurements that a lattice remembers.
 const MEMORY: usize = 400;
-/// Time of a measurement, s.
+/// The duration of a measurement, s.
 const HOVER_S: f64 = 5.0;
 
-/// Where and how the user is measured.
+/// Where and how often the user is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Geometry {
-    /// Points at which the drone stops.
+    /// The number of points at which the drone stops.
     pub stops: u32,
-    /// Measurements at each.
+    /// The number of measurements at each stop.
     pub per_stop: u32,
-    /// Height of the drone, m.
+    /// The height of the drone, m.
     pub height_m: f64,
-    /// Where the points are.
+    /// The arrangement of the stops.
     pub trajectory: Trajectory,
-    /// What is built on the ground.
+    /// The kind of buildings on the ground.
     pub environment: EnvironmentKind,
 }
 
 impl Geometry {
-    /// The thesis' circle in a city.
+    /// The thesis' circle over a city.
     pub const fn circle(stops: u32, height_m: f64) -> Self {
         let (trajectory, environment) = (Trajectory::CIRCLE, EnvironmentKind::Urban);
         Self { stops, per_stop: 1, height_m, trajectory, environment }
     }
 
-    /// Energy of the flight by the published formulas and constants (eqs 2.12 to 2.17), J.
+    /// The energy of the flight by the published formulas and constants (eqs 2.12 to 2.17), J.
     ///
     /// # Panics
     /// The speed is not above zero.
@@ -52,37 +52,37 @@ impl Geometry {
     }
 }
 
-/// The thesis' filter.
+/// The parameters of the thesis' filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PublishedFilter {
-    /// Particles L.
+    /// The number of particles L.
     pub particles: usize,
-    /// How they are resampled.
+    /// The resampling scheme.
     pub resampler: Resampler,
 }
 
-/// Which filter finds the user.
+/// The choice of the filter that locates the user.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FilterSetting {
-    /// The thesis'.
+    /// The thesis' filter.
     Published(PublishedFilter),
-    /// Ours, with so many points.
+    /// Our filter, with this number of points.
     Best(usize),
 }
 
-/// One user, and what is measured of them.
+/// One user with the measurements of one flight.
 #[derive(Debug, Clone)]
 pub struct Flight<'a> {
-    /// Where and how they are measured.
+    /// Where and how often the user is measured.
     pub geometry: &'a Geometry,
     losses: Vec<([f64; 2], f64)>,
-    /// Where the user is, m.
+    /// The true position of the user, m.
     pub user: [f64; 2],
     seed: u64,
 }
 
 impl<'a> Flight<'a> {
-    /// Flight number `index` of a seed.
+    /// Draws flight number `index` of a seed.
     pub fn new(geometry: &'a Geometry, seed: u64, index: u64) -> Self {
         let mut rng = stream(seed, index);
         let user = [SIDE_M * uniform(&mut rng), SIDE_M * uniform(&mut rng)];
@@ -96,7 +96,7 @@ impl<'a> Flight<'a> {
         Self { geometry, losses, user, seed: rng.next_u64() }
     }
 
-    /// The thesis' filter, and its randomness.
+    /// The thesis' filter with its random generator.
     ///
     /// # Panics
     /// More particles than L, or none.
@@ -128,7 +128,7 @@ impl<'a> Flight<'a> {
         filter.expect("the number of points is within bounds")
     }
 
-    /// What is measured.
+    /// The measurements of the flight.
     pub fn measurements<T: Scalar>(&self) -> impl Iterator<Item = Measurement<T>> {
         let height = T::from_f64(self.geometry.height_m);
         self.losses.iter().filter_map(move |(place, loss)| {
@@ -136,12 +136,12 @@ impl<'a> Flight<'a> {
         })
     }
 
-    /// Distance of a place from the user, m.
+    /// The distance of `place` from the user, m.
     pub fn error<T: Scalar>(&self, place: [T; 2]) -> f64 {
         distance(self.user, place.map(T::to_f64))
     }
 
-    /// What a filter believes after each measurement, in double precision.
+    /// The posterior after each measurement, in double precision.
     fn track(&self, mut cloud: impl FnMut(&Measurement<f64>) -> Cloud) -> Track {
         let (mut stops, mut estimates) = (Vec::new(), Vec::new());
         for (number, measurement) in self.measurements().enumerate() {
@@ -169,7 +169,7 @@ impl<'a> Flight<'a> {
     }
 }
 
-/// Tracks flight number `index` of a seed, in double precision.
+/// Records flight number `index` of a seed, in double precision.
 pub fn track(geometry: &Geometry, filter: FilterSetting, seed: u64, index: u64) -> Track {
     let flight = Flight::new(geometry, seed, index);
     match filter {
@@ -184,7 +184,7 @@ pub fn track(geometry: &Geometry, filter: FilterSetting, seed: u64, index: u64) 
         FilterSetting::Best(points) => {
             let mut filter = Box::new(flight.lattice::<f64, MOST>(points));
             flight.track(|measurement| {
-                // What nothing explains leaves the lattice as it was.
+                // A measurement that no point explains leaves the lattice unchanged.
                 let _ = filter.measure(measurement);
                 Cloud::of_lattice(filter.posterior())
             })
@@ -192,7 +192,7 @@ pub fn track(geometry: &Geometry, filter: FilterSetting, seed: u64, index: u64) 
     }
 }
 
-/// The square in which the user is.
+/// The square that holds the user.
 ///
 /// # Panics
 /// Never: there is a square of this side.

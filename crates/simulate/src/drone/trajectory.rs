@@ -1,42 +1,42 @@
-//! Where the drone measures a user who stays: the thesis' Fig. 3.1.
+//! The stops at which the drone measures a stationary user: the thesis' Fig. 3.1.
 
 use std::f64::consts::TAU;
 
 use kestirim_replay::metrics::polyline_length;
 
-/// Side of the square in which the user is, m.
+/// The side of the square that holds the user, m.
 pub const SIDE_M: f64 = 2000.0;
 
 /// A path through the air.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Trajectory {
-    /// Round the middle of the square.
+    /// A circle about the centre of the square.
     Circle {
-        /// Its radius, m.
+        /// The radius, m.
         radius_m: f64,
     },
-    /// Row by row about the middle, as many rows as columns.
+    /// A grid about the centre, flown row by row, with as many rows as columns.
     Grid {
-        /// From one point to the next, m.
+        /// The distance between neighbouring points, m.
         spacing_m: f64,
     },
 }
 
 impl Trajectory {
-    /// The thesis' circle (b).
+    /// The thesis' trajectory (b), a circle.
     pub const CIRCLE: Self = Self::Circle { radius_m: SIDE_M / 3.0 };
 
-    /// The centres of as many cells of the square as there are points (a).
+    /// The thesis' trajectory (a): the centres of as many cells of the square as there are points.
     pub fn grid(points: u32) -> Self {
         Self::Grid { spacing_m: SIDE_M / f64::from(points).sqrt() }
     }
 
-    /// A grid (c) whose path is as long as that of a circle with as many points.
+    /// The thesis' trajectory (c): a grid whose path is as long as that of a circle with as many points.
     pub fn small_grid(points: u32) -> Self {
         Self::Grid { spacing_m: SIDE_M / 3.0 * 2.0 * (TAU / 2.0 / f64::from(points)).sin() }
     }
 
-    /// The points in the order in which they are flown to.
+    /// The points in flight order.
     pub fn points(self, count: u32) -> Vec<[f64; 2]> {
         match self {
             Self::Circle { radius_m } => (0..count)
@@ -53,7 +53,7 @@ impl Trajectory {
                 (0..count)
                     .map(|k| {
                         let (row, along) = (k / columns, k % columns);
-                        // There and back, so that each leg is one spacing long.
+                        // Rows alternate in direction, so that each leg is one spacing long.
                         let column = if row % 2 == 0 { along } else { columns - 1 - along };
                         [place(column), place(row)]
                     })
@@ -62,7 +62,7 @@ impl Trajectory {
         }
     }
 
-    /// Length of the path from the first point to the last, m.
+    /// The length of the path from the first point to the last, m.
     pub fn length(self, count: u32) -> f64 {
         polyline_length(&self.points(count))
     }

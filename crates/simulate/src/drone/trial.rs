@@ -1,4 +1,4 @@
-//! One trial of a user who stays: all filters on the same measurements.
+//! One trial with a stationary user: all filters on the same measurements.
 
 use kestirim_air_to_ground::{Channel, Measurement};
 use kestirim_particle_filter::{Likelihood, PointMass};
@@ -7,41 +7,41 @@ use kestirim_scalar::{Q16_16, Scalar};
 
 use super::static_user::{Flight, Geometry, MOST, PublishedFilter, square};
 
-/// Filters of no more particles than this are kept in less memory, which stays in the cache.
+/// Filters with at most this many particles get a smaller buffer, which stays in the cache.
 const FEW: usize = 1024;
-/// Points of the lattice that stands for the exact posterior.
+/// The number of points of the lattice that represents the exact posterior.
 const DENSE: usize = 640;
 
-/// Which filters are compared.
+/// The filters to compare and the measurements to compare them on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Job {
-    /// On these measurements.
+    /// The geometry of the measurements.
     pub geometry: Geometry,
-    /// The thesis' filters.
+    /// The variants of the thesis' filter.
     pub published: Vec<PublishedFilter>,
-    /// Numbers of points of our filters.
+    /// The numbers of points of our filters.
     pub bests: Vec<usize>,
-    /// Whether the exact posterior is wanted.
+    /// Whether to compute the exact posterior.
     pub limit: bool,
 }
 
-/// What came out of a trial, m.
+/// The result of a trial; errors in m.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Outcome {
-    /// Errors of the thesis' filters.
+    /// The errors of the thesis' filters, m.
     pub published: Vec<f64>,
-    /// Errors of ours.
+    /// The errors of our filters, m.
     pub bests: Vec<f64>,
-    /// Error of the exact posterior's mean; 0 if it was not wanted.
+    /// The error of the mean of the exact posterior, m; 0 if it was not requested.
     pub limit: f64,
-    /// Measurements that a filter refused.
+    /// The number of measurements that a filter refused.
     pub refused: u32,
-    /// Of our first filter, whether its 90 % region holds the user.
+    /// Whether the 90 % credible region of our first filter contains the user.
     pub credible: bool,
 }
 
 impl Job {
-    /// Names of the numbers of an outcome.
+    /// The names of the numbers of an outcome.
     pub fn columns(&self) -> Vec<String> {
         let published = self.published.iter().map(|PublishedFilter { particles, resampler }| {
             format!("published {particles} {resampler:?}_m")
@@ -53,13 +53,13 @@ impl Job {
 }
 
 impl Outcome {
-    /// As a row of numbers, in the order of [`Job::columns`].
+    /// The outcome as a row of numbers, in the order of [`Job::columns`].
     pub fn numbers(&self) -> Vec<f64> {
         let first = [self.limit, f64::from(self.refused), f64::from(self.credible)];
         [&first[..], &self.published, &self.bests].concat()
     }
 
-    /// From a row of numbers of a job; what is not there is 0.
+    /// The outcome that a row of numbers stands for; missing numbers are 0.
     pub fn of_numbers(job: &Job, row: &[f64]) -> Self {
         let mut row = row.iter().copied();
         let mut next = || row.next().unwrap_or_default();
@@ -70,7 +70,7 @@ impl Outcome {
     }
 }
 
-/// One user, one flight.
+/// Simulates one flight with one user.
 pub fn trial(job: &Job, scalar: ScalarKind, seed: u64, index: u64) -> Outcome {
     match scalar {
         ScalarKind::F32 => with_scalar::<f32>(job, seed, index),
@@ -105,14 +105,14 @@ fn with_scalar<T: Scalar>(job: &Job, seed: u64, index: u64) -> Outcome {
     outcome
 }
 
-/// What our filter found.
+/// The result of our filter.
 struct Found {
     error: f64,
     refused: u32,
     credible: bool,
 }
 
-/// A path loss: how likely it is with the user at a place.
+/// A measured path loss, as a likelihood over the user's positions.
 struct Loss<'a> {
     channel: &'a Channel<f32>,
     measurement: &'a Measurement<f32>,
@@ -126,7 +126,7 @@ impl Likelihood<f32, 2> for Loss<'_> {
 }
 
 impl Flight<'_> {
-    /// Error of the thesis' filter, and how many measurements it refused.
+    /// The error of the thesis' filter, m, and the number of measurements that it refused.
     fn by_published<T: Scalar, const L: usize>(&self, filter: PublishedFilter) -> (f64, u32) {
         let (mut filter, mut rng) = self.published::<T, L>(filter);
         let measurements = self.measurements::<T>();
@@ -134,7 +134,8 @@ impl Flight<'_> {
         (self.error(filter.moments().mean()), refused)
     }
 
-    /// Our filter; whether its 90 % region holds the user takes a while, and is only found if asked for.
+    /// Runs our filter. Whether its 90 % credible region contains the user is expensive, and only computed if `region`
+    /// is set.
     fn by_best<T: Scalar, const L: usize>(&self, points: usize, region: bool) -> Found {
         let mut filter = Box::new(self.lattice::<T, L>(points));
         let refused = self.measurements::<T>().filter(|m| filter.measure(m).is_err()).count();
@@ -143,12 +144,12 @@ impl Flight<'_> {
         Found { error: self.error(filter.moments().mean()), refused: refused as u32, credible }
     }
 
-    /// Error of the mean of the exact posterior, on a lattice laid anew until it is fine enough.
+    /// The error of the mean of the exact posterior, m, on a lattice that is refined until it is fine enough.
     fn exact(&self) -> f64 {
         let channel = self.geometry.environment.channel::<f32>();
         let weigh = |mut posterior: PointMass<f32, 2, DENSE>| {
             for measurement in self.measurements() {
-                // What nothing explains is left out.
+                // A measurement that no point explains is left out.
                 let _ = posterior.weigh(&Loss { channel: &channel, measurement: &measurement });
             }
             posterior

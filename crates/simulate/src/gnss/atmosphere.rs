@@ -1,4 +1,4 @@
-//! What delays signals on their way through the air and the ionosphere.
+//! Signal delays in the troposphere and the ionosphere.
 
 use std::f64::consts::{PI, TAU};
 
@@ -9,28 +9,28 @@ use super::noise::Wander;
 use super::times::{INTERVAL_S, MIDNIGHT};
 use crate::random::{normal, uniform};
 
-/// How fast the zenith wet delay walks, m/√s: 4 mm in an hour.
+/// The random walk of the zenith wet delay, m/√s: 4 mm in an hour.
 const WET_WALK: f64 = 7e-5;
-/// How far the weather is from the standard atmosphere, as a zenith delay, m: 10 hPa.
+/// The deviation of the weather from the standard atmosphere, as a zenith delay, m: 10 hPa.
 const WEATHER_M: f64 = 0.023;
-/// Horizontal gradients, m, and how long they last, s.
+/// The horizontal gradients, m, and their correlation time, s.
 const GRADIENT_M: f64 = 0.4e-3;
 const GRADIENT_MEMORY_S: f64 = 6.0 * 3600.0;
-/// Delay of L1 by 10¹⁶ electrons/m², m.
+/// The delay of L1 caused by 10¹⁶ electrons/m², m.
 const TECU_M: f64 = 40.3e16 / (FREQUENCY[0] * FREQUENCY[0]);
-/// Height of the ionosphere, in radii of the Earth.
+/// The height of the ionospheric shell, in Earth radii.
 const SHELL: f64 = 0.0627;
 
-/// The air over a station.
+/// The troposphere above a station.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Air {
     troposphere: Troposphere,
-    /// m.
+    /// The deviation of the zenith hydrostatic delay from the standard atmosphere, m.
     weather: f64,
-    /// m.
+    /// The zenith wet delay, m.
     wet: f64,
     gradients: [Wander; 2],
-    /// Towards north and east, m.
+    /// The horizontal gradients towards north and east, m.
     gradient: [f64; 2],
 }
 
@@ -46,7 +46,7 @@ impl Air {
         }
     }
 
-    /// Lets an epoch pass.
+    /// Advances by one epoch.
     pub(super) fn advance(&mut self, rng: &mut impl Rng) {
         self.wet = (self.wet + normal(rng, WET_WALK * INTERVAL_S.sqrt())).max(0.0);
         for (gradient, wander) in self.gradient.iter_mut().zip(&mut self.gradients) {
@@ -54,35 +54,35 @@ impl Air {
         }
     }
 
-    /// The delay from a direction, m.
+    /// The slant delay of a signal from a direction, m.
     pub(super) fn delay(&self, direction: Direction) -> f64 {
         let mapping = self.troposphere.mapping(direction.elevation);
         let dry = mapping.hydrostatic * (self.troposphere.zenith_hydrostatic() + self.weather);
         let (sine, cosine) = direction.azimuth.sin_cos();
         let [north, east] = self.gradient;
-        // Davis et al. 1993.
+        // The gradient model of Davis et al. 1993.
         let slope = mapping.wet / direction.elevation.tan();
         dry + mapping.wet * self.wet + slope * (north * cosine + east * sine)
     }
 }
 
-/// The electrons over a region: many at noon near the equator, few at night.
+/// The electron content over a region: high at noon near the equator, low at night.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ionosphere {
-    /// 10¹⁶ electrons/m² at night …
+    /// The electron content at night, 10¹⁶ electrons/m².
     night: f64,
-    /// … and what noon at the equator has beside it.
+    /// The additional electron content at noon at the equator, 10¹⁶ electrons/m².
     noon: f64,
 }
 
 impl Ionosphere {
-    /// Of the Sun's calm years, as the recordings' 2008 and 2020 and the paper's 2019 are. In active ones it jumps by
-    /// more than slips do.
+    /// Draws an ionosphere of years with a calm Sun, such as 2008 and 2020 of the recordings and 2019 of the paper. In
+    /// active years it jumps by more than slips do.
     pub(super) fn draw(rng: &mut impl Rng) -> Self {
         Self { night: 2.0 + 3.0 * uniform(rng), noon: 5.0 + 20.0 * uniform(rng) }
     }
 
-    /// The delay of L1's code from a direction, m; `wave` disturbs it.
+    /// The delay of L1's code from a direction, m, including the disturbance `wave`.
     pub(super) fn delay(
         &self,
         place: &Geodetic,
@@ -92,7 +92,7 @@ impl Ionosphere {
     ) -> f64 {
         let Direction { elevation, azimuth } = direction;
         let grazing = elevation.cos() / (1.0 + SHELL);
-        // Where the ray pierces the shell.
+        // The point at which the ray pierces the shell.
         let arc = PI / 2.0 - elevation - grazing.asin();
         let latitude = place.latitude + arc * azimuth.cos();
         let longitude = place.longitude + arc * azimuth.sin() / latitude.cos().max(0.2);
@@ -103,17 +103,17 @@ impl Ionosphere {
     }
 }
 
-/// A travelling disturbance, as one satellite's ray meets it.
+/// A travelling ionospheric disturbance, as it affects one satellite's ray.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Wave {
-    /// 10¹⁶ electrons/m².
+    /// The amplitude, 10¹⁶ electrons/m².
     size: f64,
     period_s: f64,
     phase: f64,
 }
 
 impl Wave {
-    /// Of medium scale.
+    /// Draws a disturbance of medium scale.
     pub(super) fn draw(rng: &mut impl Rng) -> Self {
         Self {
             size: normal(rng, 0.15),

@@ -1,4 +1,4 @@
-//! Clocks of satellites and of receivers.
+//! The clocks of satellites and receivers.
 
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use rand_core::Rng;
@@ -6,15 +6,15 @@ use rand_core::Rng;
 use super::times::{EPOCHS, INTERVAL_S, LAST, SAMPLES};
 use crate::random::{normal, uniform};
 
-/// How fast the clocks of satellites walk, m/√s: from the newest to the oldest rubidium.
+/// The random walk of the satellites' clocks, m/√s: from the newest to the oldest rubidium.
 const WALK: [f64; 2] = [0.5e-3, 3e-3];
-/// Receivers let their clock run up to this, s, and then put it back by a millisecond.
+/// The step by which receivers reset their clock, s, whenever it is off by more than half of it.
 const MILLISECOND: f64 = 1e-3;
-/// Clocks are put elsewhere a few times a day, by up to so much, s.
+/// The number of clock jumps a day, and the largest jump, s.
 const JUMPS_A_DAY: f64 = 3.0;
 const LARGEST_JUMP: f64 = 300e-9;
 
-/// A satellite's clock, on the samples of the products; straight between them.
+/// A satellite's clock, sampled at the times of the products and interpolated linearly.
 #[derive(Debug, Clone)]
 pub(super) struct SatelliteClock(Vec<f64>);
 
@@ -31,12 +31,12 @@ impl SatelliteClock {
         Self(samples.collect())
     }
 
-    /// Ahead of GPS time on the samples, s.
+    /// The offsets from GPS time at the samples, s; positive if the clock is ahead.
     pub(super) fn samples(&self) -> &[f64] {
         &self.0
     }
 
-    /// The same at any second since midnight within them.
+    /// The offset from GPS time, s, at any second since midnight within the samples.
     pub(super) fn at(&self, second: f64) -> f64 {
         let place = second / INTERVAL_S + LAST;
         let below = place as usize;
@@ -48,18 +48,18 @@ impl SatelliteClock {
 /// A receiver's clock.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ReceiverClock {
-    /// Ahead of GPS time, s.
+    /// The offset from GPS time, s; positive if the clock is ahead.
     bias: f64,
-    /// s/s.
+    /// The rate of the offset, s/s.
     rate: f64,
-    /// How much the rate changes in an epoch.
+    /// The random walk of the rate in one epoch.
     rate_walk: f64,
-    /// How much the bias walks in an epoch, s.
+    /// The random walk of the offset in one epoch, s.
     walk: f64,
 }
 
 impl ReceiverClock {
-    /// Half of them steered by masers, half quartz.
+    /// Draws a clock: half of them are steered by masers, half are quartz.
     pub(super) fn draw(rng: &mut impl Rng) -> Self {
         let quartz = uniform(rng) < 0.5;
         Self {
@@ -70,7 +70,7 @@ impl ReceiverClock {
         }
     }
 
-    /// Lets an epoch pass.
+    /// Advances by one epoch and returns the offset, s.
     pub(super) fn next(&mut self, rng: &mut impl Rng) -> f64 {
         self.rate += normal(rng, self.rate_walk);
         self.bias += self.rate * INTERVAL_S + normal(rng, self.walk);

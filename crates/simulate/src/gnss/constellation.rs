@@ -1,4 +1,4 @@
-//! Thirty satellites in six planes, on Kepler's orbits.
+//! Thirty satellites in six planes, on Keplerian orbits.
 
 use std::f64::consts::TAU;
 
@@ -8,44 +8,44 @@ use rand_core::Rng;
 
 use crate::random::{normal, uniform};
 
-/// How many planes there are.
+/// The number of orbital planes.
 const PLANES: u8 = 6;
-/// How many satellites a plane has.
+/// The number of satellites in a plane.
 const SLOTS: u8 = 5;
-/// Semi-major axis, m: two revolutions a sidereal day.
+/// The semi-major axis, m: two revolutions a sidereal day.
 const SEMI_MAJOR_M: f64 = 26_559.7e3;
-/// Inclination of all planes, rad.
+/// The inclination of all planes, rad.
 const INCLINATION: f64 = 0.96;
-/// Largest eccentricity.
+/// The largest eccentricity.
 const ECCENTRICITY: f64 = 0.02;
-/// How far satellites stand from even spacing, rad.
+/// The standard deviation of the satellites from even spacing, rad.
 const SPACING: f64 = 0.15;
 
-/// An orbit in the frame that does not rotate and is the Earth-fixed one at midnight.
+/// An orbit in the inertial frame that coincides with the Earth-fixed one at midnight.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Kepler {
     eccentricity: f64,
-    /// Towards the perigee.
+    /// The direction of the perigee.
     along: Vector3<f64>,
-    /// A quarter of a revolution later.
+    /// The direction a quarter of a revolution after the perigee.
     across: Vector3<f64>,
-    /// Mean anomaly at midnight, rad.
+    /// The mean anomaly at midnight, rad.
     anomaly: f64,
 }
 
-/// A satellite at an instant.
+/// The motion of a satellite at an instant.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Motion {
-    /// Centre of mass, m.
+    /// The centre of mass, m.
     pub(super) position: Vector3<f64>,
-    /// m/s.
+    /// The velocity, m/s.
     pub(super) velocity: Vector3<f64>,
-    /// How far its clock runs ahead because of its eccentric orbit, s.
+    /// The relativistic clock offset caused by the eccentricity of the orbit, s; positive if the clock is ahead.
     pub(super) relativity: f64,
 }
 
 impl Kepler {
-    /// All satellites, in the order of their numbers from 1.
+    /// Draws all satellites, in the order of their numbers from 1.
     pub(super) fn constellation(rng: &mut impl Rng) -> Vec<Self> {
         let turn = TAU * uniform(rng);
         let satellites = (0..PLANES).flat_map(|plane| (0..SLOTS).map(move |slot| (plane, slot)));
@@ -73,17 +73,17 @@ impl Kepler {
         }
     }
 
-    /// Revolutions, rad/s.
+    /// The mean motion, rad/s.
     pub(super) fn rate() -> f64 {
         (EARTH_GRAVITY / SEMI_MAJOR_M.powi(3)).sqrt()
     }
 
-    /// Some seconds after midnight.
+    /// The motion `second` seconds after midnight.
     pub(super) fn at(&self, second: f64) -> Motion {
         let Self { eccentricity, along, across, anomaly } = *self;
         let rate = Self::rate();
         let mean = anomaly + rate * second;
-        // Each turn multiplies the error by the eccentricity, until nothing changes any more.
+        // Each iteration multiplies the error by the eccentricity, until nothing changes any more.
         let mut eccentric = mean;
         for _ in 0..10 {
             let before = eccentric;
@@ -96,7 +96,7 @@ impl Kepler {
         let minor = (1.0 - eccentricity * eccentricity).sqrt();
         let speed = SEMI_MAJOR_M * rate / (1.0 - eccentricity * cosine);
         let in_plane = along * (cosine - eccentricity) + across * (minor * sine);
-        // The interface specification's F, from its constants.
+        // The constant F of the interface specification, computed from its definition.
         let factor = -2.0 * EARTH_GRAVITY.sqrt() / (SPEED_OF_LIGHT * SPEED_OF_LIGHT);
         Motion {
             position: in_plane * SEMI_MAJOR_M,

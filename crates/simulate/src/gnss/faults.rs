@@ -1,4 +1,4 @@
-//! What goes wrong beyond noise.
+//! Faults beyond noise.
 
 use kestirim_gnss_files::Observed;
 use kestirim_gnss_ppp::WAVELENGTH;
@@ -7,25 +7,27 @@ use rand_core::Rng;
 
 use crate::random::uniform;
 
-/// How often what goes wrong. Errors are equal on both carriers unless said otherwise: differences between them
-/// would give them away.
+/// The frequencies of faults. Errors are equal on both carriers unless stated otherwise, because differences between
+/// the carriers would reveal them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rates {
-    /// Share of codes that are off, by 3 to 30 m.
+    /// The share of codes with an error, of 3 to 30 m.
     pub code_outliers: f64,
-    /// Share of phases that are off, by 0.05 to 1 m, in a single epoch.
+    /// The share of phases with an error, of 0.05 to 1 m, in a single epoch.
     pub phase_outliers: f64,
-    /// Slips a station-day that change the combinations by less than the detectors see: as large as one cycle on
-    /// both carriers, four and three, or five and four make the ionosphere-free phase (0.107, 0.805, 0.912 m).
+    /// The number of slips per station-day that change the combinations by less than the detectors see: by the effect
+    /// on the ionosphere-free phase (0.107, 0.805, 0.912 m) of one cycle on both carriers, of four and three, or of
+    /// five and four.
     pub small_slips: u32,
-    /// Slips a station-day by up to a hundred cycles, on each carrier others, of which the receiver says nothing.
+    /// The number of slips per station-day by up to a hundred cycles, independently on each carrier, that the receiver
+    /// does not report.
     pub big_slips: u32,
-    /// Times a station-day that three satellites' codes are 10 m too long for 15 minutes.
+    /// The number of times per station-day that three satellites' codes are 10 m too long for 15 minutes.
     pub code_biases: u32,
 }
 
 impl Rates {
-    /// Nothing goes wrong.
+    /// No faults.
     pub const NONE: Self = Self {
         code_outliers: 0.0,
         phase_outliers: 0.0,
@@ -34,7 +36,7 @@ impl Rates {
         code_biases: 0,
     };
 
-    /// As they were put into the recording `esbc2020177_injected`, and big slips, which no recording is without.
+    /// The faults of the recording `esbc2020177_injected`, and big slips, which every recording has.
     pub const RECORDING: Self = Self {
         code_outliers: 0.02,
         phase_outliers: 0.01,
@@ -44,14 +46,14 @@ impl Rates {
     };
 }
 
-/// Lengths of small slips, m.
+/// The sizes of small slips, m.
 const SMALL_SLIPS_M: [f64; 3] = [0.107, 0.805, 0.912];
-/// How many codes have a bias at a time, how large it is, m, and for how many epochs it stays.
+/// The number of codes biased at the same time, the size of the bias, m, and its duration in epochs.
 const BIASED: usize = 3;
 const BIAS_M: f64 = 10.0;
 const BIAS_EPOCHS: usize = 30;
 
-/// Puts faults into a day.
+/// Adds faults to a day.
 pub(super) fn disturb(epochs: &mut [Epoch], rates: &Rates, rng: &mut impl Rng) {
     for observed in epochs.iter_mut().flat_map(|epoch| &mut epoch.satellites) {
         if uniform(rng) < rates.code_outliers {
@@ -80,10 +82,11 @@ pub(super) fn disturb(epochs: &mut [Epoch], rates: &Rates, rng: &mut impl Rng) {
     }
 }
 
-/// Unseen for so many epochs, a satellite has set: longer than any gap, shorter than it takes to rise again.
+/// The number of unseen epochs after which a satellite has set: longer than any gap, shorter than it takes to rise
+/// again.
 const SET: usize = 60;
 
-/// A satellite's phases are others from some epoch until it sets.
+/// Shifts a satellite's phases from a random epoch until it sets.
 fn slip(epochs: &mut [Epoch], metres: [f64; 2], rng: &mut impl Rng) {
     let start = below(epochs.len(), rng);
     let Some(&prn) = chosen(&epochs[start], 1, rng).first() else { return };
@@ -106,7 +109,7 @@ fn find(epoch: &mut Epoch, prn: u8) -> Option<&mut Observed> {
     epoch.satellites.iter_mut().find(|observed| observed.prn == prn)
 }
 
-/// Some of an epoch's satellites, each once.
+/// Some of an epoch's satellites, drawn without repetition.
 fn chosen(epoch: &Epoch, count: usize, rng: &mut impl Rng) -> Vec<u8> {
     let mut all: Vec<u8> = epoch.satellites.iter().map(|observed| observed.prn).collect();
     (0..count.min(all.len())).map(|_| all.swap_remove(below(all.len(), rng))).collect()
@@ -116,7 +119,7 @@ fn below(count: usize, rng: &mut impl Rng) -> usize {
     ((count as f64 * uniform(rng)) as usize).min(count.saturating_sub(1))
 }
 
-/// A length between two, of either sign.
+/// A random value whose magnitude lies between `least` and `most`, of either sign.
 fn between(least: f64, most: f64, rng: &mut impl Rng) -> f64 {
     let length = least + (most - least) * uniform(rng);
     if uniform(rng) < 0.5 { length } else { -length }

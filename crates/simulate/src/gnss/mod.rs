@@ -1,15 +1,14 @@
-//! A synthetic sky: what a receiver at a known place observes in a day, and the products of that day.
+//! A synthetic sky: the observations of a receiver at a known position over a day, and the products of that day.
 //!
-//! `constellation` has the orbits, `clocks` those of the satellites and of the receiver, `products` what a service
-//! knows of both, both at the `times` of a day, `atmosphere` what delays the signals, `noise` and `faults` what
-//! disturbs them; `receiver` puts the observations together.
+//! `constellation` has the orbits, `clocks` the clocks of the satellites and of the receiver, `products` what a service
+//! publishes of both at the `times` of a day, `atmosphere` the signal delays, `noise` and `faults` the disturbances;
+//! `receiver` assembles the observations.
 //!
-//! The observations come from a forward model of their own: Kepler's orbits, the light's path in the frame that does
-//! not rotate, relativity by the eccentric anomaly. It shares with the filter's model the formulas of the solid tide,
-//! the wind-up with nominal yaw, Shapiro's delay, and the hydrostatic zenith delay and mapping of a standard
-//! atmosphere: a mistake in those would not show here, only on recorded data. What the filter does not model is the
-//! weather, horizontal gradients, the errors of the products, and multipath. Antennas are points, and oceans have no
-//! tides.
+//! The observations come from an independent forward model: Keplerian orbits, the light path in the inertial frame,
+//! relativity by the eccentric anomaly. It shares with the filter's model the formulas of the solid tide, the wind-up
+//! with nominal yaw, Shapiro's delay, and the hydrostatic zenith delay and mapping of a standard atmosphere: a mistake
+//! in those would not show here, only on recorded data. The filter does not model the weather, horizontal gradients,
+//! the errors of the products, or multipath. Antennas are points, and there is no ocean loading.
 
 mod atmosphere;
 mod clocks;
@@ -30,22 +29,22 @@ use self::receiver::Station;
 pub use self::times::{EPOCHS, INTERVAL_S, MIDNIGHT, UTC_MINUS_GPS};
 use crate::random::stream;
 
-/// Streams of randomness of a day: faults have their own, so that the same day can be had without them.
+/// The number of random streams of a day: faults have their own, so that the same day exists without them.
 const STREAMS: u64 = 2;
 
-/// A day of a station.
+/// The simulated day of a station.
 #[derive(Debug)]
 pub struct Day {
-    /// Where the marker is, ECEF, m.
+    /// The true position of the marker, ECEF, m.
     pub marker: Vector3<f64>,
-    /// What the receiver observed.
+    /// The observations of the receiver.
     pub epochs: Vec<Epoch>,
-    /// What is known of the satellites.
+    /// The products of the satellites.
     pub products: Products,
 }
 
 impl Day {
-    /// Station-day number `index` of an experiment: a place, a sky and a weather of its own.
+    /// Draws station-day number `index` of an experiment, with its own position, sky and weather.
     pub fn new(seed: u64, index: u64, faults: &Rates) -> Self {
         let mut rng = stream(seed, STREAMS * index);
         let services = Services::draw(&mut rng);
@@ -80,7 +79,8 @@ mod tests {
         assert!(pairs().all(|(a, b)| a.prn == b.prn));
     }
 
-    /// Eight satellites or more, at most as many as a filter has room for; codes differ by the ionosphere.
+    /// Eight satellites or more, at most as many as a filter has room for; codes of the two carriers differ by the
+    /// ionosphere.
     #[test]
     fn a_sky_as_gps_has_it() {
         for index in 0..4 {
@@ -126,9 +126,9 @@ mod tests {
                 last[place] = Carriers::L1L2.geometry_free(phase);
             }
         }
-        // Each satellite rises once or twice a day; an arc broken by low elevation comes beside it.
+        // Each satellite rises once or twice a day; low elevation may split an arc.
         assert!(slips < count / 100, "{slips} of {count}");
-        // Beyond 5 cm only where a satellite's own jumps have been as large.
+        // Above 5 cm only where a satellite's own jumps were as large.
         assert!((0.005..0.1).contains(&largest), "{largest}");
     }
 }

@@ -1,4 +1,4 @@
-//! The satellites as they are, and as a service publishes them.
+//! The true satellites, and the products that a service publishes of them.
 
 use std::f64::consts::TAU;
 
@@ -14,24 +14,24 @@ use super::noise::Wander;
 use super::times::{INTERVAL_S, LAST, MIDNIGHT, SAMPLES};
 use crate::random::{normal, uniform};
 
-/// Samples of a clock to one of an orbit: 15 minutes.
+/// The number of clock samples per orbit sample: 15 minutes.
 const TO_ORBIT: usize = 30;
-/// Errors of a final orbit, m: radially, along the track and across it.
+/// The errors of a final orbit, m: radial, along-track and cross-track.
 const ORBIT_M: [f64; 3] = [0.010, 0.020, 0.020];
-/// What of a clock's error stays the same all day, m; ambiguities take it up.
+/// The part of a clock's error that is constant all day, m; ambiguities absorb it.
 const CLOCK_BIAS_M: f64 = 0.03;
-/// What of it wanders, m, and how long it remembers, s.
+/// The varying part of a clock's error, m, and its correlation time, s.
 const CLOCK_M: f64 = 0.006;
 const CLOCK_MEMORY_S: f64 = 5_400.0;
 
-/// A satellite and what is thought of it.
+/// A satellite and the errors of its products.
 #[derive(Debug, Clone)]
 pub(super) struct Spacecraft {
     pub(super) orbit: Kepler,
     pub(super) clock: SatelliteClock,
-    /// The published clock less the true one, s.
+    /// The published minus the true clock, s.
     clock_error: Vec<f64>,
-    /// Amplitude (m) and phase of the orbit's error in three directions, once and twice a revolution.
+    /// The amplitude (m) and phase of the orbit's error in three directions, at once and twice per revolution.
     orbit_error: [[(f64, f64); 3]; 2],
 }
 
@@ -45,7 +45,7 @@ impl Services {
         Self(orbits.into_iter().map(|orbit| Spacecraft::draw(orbit, rng)).collect())
     }
 
-    /// What is published.
+    /// The published products.
     pub(super) fn products(&self) -> Products {
         Products::of_satellites(MIDNIGHT, self.0.iter().map(Spacecraft::published))
     }
@@ -62,7 +62,7 @@ impl Spacecraft {
         let mut wander = Wander::draw(CLOCK_MEMORY_S, rng);
         let error = |_| (bias + CLOCK_M * wander.next(rng)) / SPEED_OF_LIGHT;
         let clock_error = (0..SAMPLES).map(error).collect();
-        // Two waves, each of which has a variance of half its amplitude's square.
+        // Two waves, each with a variance of half its squared amplitude.
         let mut wave = |size: f64| (normal(rng, size), TAU * uniform(rng));
         let orbit_error = [ORBIT_M.map(&mut wave), ORBIT_M.map(&mut wave)];
         Self { orbit, clock, clock_error, orbit_error }

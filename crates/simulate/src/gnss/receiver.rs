@@ -1,4 +1,4 @@
-//! A station that observes.
+//! An observing station.
 
 use std::f64::consts::TAU;
 
@@ -19,26 +19,27 @@ use super::products::{Services, Spacecraft};
 use super::times::{INTERVAL_S, MIDNIGHT, UTC_MINUS_GPS};
 use crate::random::{normal, uniform};
 
-/// Lowest elevation at which the receiver tracks, rad.
+/// The lowest elevation at which the receiver tracks, rad.
 const HORIZON: f64 = 0.087;
-/// So far below, rad, nobody need know when the signal was sent: in a tenth of a second a satellite moves by 10⁻⁵ rad.
+/// The elevation below which the time of transmission need not be computed, rad: in a tenth of a second a satellite
+/// moves by 10⁻⁵ rad.
 const FAR_BELOW: f64 = HORIZON - 1e-3;
-/// Nothing is seen of a satellite in this share of the epochs …
+/// The share of epochs in which a satellite is not observed.
 const MISSING: f64 = 0.002;
-/// … and for this share of these the receiver loses its phase, and says so.
+/// The share of unobserved epochs in which the receiver loses the phase, and reports it.
 const LOST: f64 = 0.1;
-/// White noise of a code.
+/// The white noise of the code.
 const CODE: Spread = Spread { zenith: 0.12, horizon: 0.6 };
-/// Multipath of a code, and how long it remembers, s.
+/// The multipath of the code, and its correlation time, s.
 const CODE_MULTIPATH: Spread = Spread { zenith: 0.2, horizon: 0.6 };
 const CODE_MEMORY_S: f64 = 600.0;
-/// White noise of a phase.
+/// The white noise of the phase.
 const PHASE: Spread = Spread { zenith: 1e-3, horizon: 3e-3 };
-/// Multipath of a phase.
+/// The multipath of the phase, and its correlation time, s.
 const PHASE_MULTIPATH: Spread = Spread { zenith: 1.2e-3, horizon: 4e-3 };
 const PHASE_MEMORY_S: f64 = 360.0;
 
-/// A receiver at its place.
+/// A receiver at its position.
 #[derive(Debug)]
 pub(super) struct Station {
     place: Geodetic,
@@ -48,10 +49,10 @@ pub(super) struct Station {
     channels: Vec<Option<Channel>>,
 }
 
-/// What a receiver's channel has of its own.
+/// The state of one receiver channel.
 #[derive(Debug, Clone, Copy)]
 struct Channel {
-    /// Cycles on L1 and L2.
+    /// The ambiguities on L1 and L2, cycles.
     ambiguity: [f64; 2],
     wind_up: Option<f64>,
     code: [Wander; 2],
@@ -77,31 +78,31 @@ fn ambiguity(rng: &mut impl Rng) -> [f64; 2] {
     [(); 2].map(|()| (2e6 * (uniform(rng) - 0.5)).round())
 }
 
-/// What an epoch's observations have in common.
+/// Quantities that all observations of an epoch share.
 struct Instant {
-    /// By the receiver's clock, s since midnight.
+    /// The epoch by the receiver's clock, s since midnight.
     tag: f64,
-    /// The receiver's clock ahead of GPS time, s.
+    /// The offset of the receiver's clock from GPS time, s; positive if it is ahead.
     clock: f64,
-    /// The antenna, with the tide, ECEF, m.
+    /// The position of the antenna, including the tide, ECEF, m.
     antenna: Vector3<f64>,
     enu_from_ecef: Matrix3<f64>,
     sun: Vector3<f64>,
 }
 
-/// What delays a signal on both carriers alike, and where it comes from.
+/// The path of a signal, with the delays that both carriers share.
 struct Path {
-    /// From the satellite's clock to the receiver's, m.
+    /// The range between the satellite's clock and the receiver's, m.
     range: f64,
     direction: Direction,
-    /// ECEF.
+    /// The line of sight, ECEF.
     sight: Vector3<f64>,
-    /// ECEF when the signal arrives, m.
+    /// The position of the satellite, in the ECEF frame at reception, m.
     satellite: Vector3<f64>,
 }
 
 impl Station {
-    /// Anywhere but near the poles.
+    /// Draws a station anywhere except near the poles.
     pub(super) fn draw(rng: &mut impl Rng) -> Self {
         let place = Geodetic {
             latitude: (1.88 * (uniform(rng) - 0.5)).asin(),
@@ -117,12 +118,12 @@ impl Station {
         }
     }
 
-    /// ECEF, m.
+    /// The position of the marker, ECEF, m.
     pub(super) fn marker(&self) -> Vector3<f64> {
         self.place.to_ecef()
     }
 
-    /// Lets an epoch pass and observes all satellites above the horizon.
+    /// Advances by one epoch and observes all satellites above the horizon.
     pub(super) fn observe(&mut self, services: &Services, epoch: u32, rng: &mut impl Rng) -> Epoch {
         let tag = f64::from(epoch) * INTERVAL_S;
         let time = MIDNIGHT.plus(tag);
@@ -157,7 +158,7 @@ impl Station {
         Epoch { time, power_failure: false, satellites: satellites.collect() }
     }
 
-    /// The signal's path, in the frame that does not rotate; none of a satellite that is far below the horizon.
+    /// The signal's path, computed in the inertial frame; `None` for a satellite far below the horizon.
     fn path(&self, instant: &Instant, spacecraft: &Spacecraft) -> Option<Path> {
         let received = instant.tag - instant.clock;
         let receiver = carried_along(&instant.antenna, -received);

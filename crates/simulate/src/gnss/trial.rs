@@ -8,25 +8,25 @@ use rayon::prelude::*;
 
 use super::{Day, MIDNIGHT, Rates, UTC_MINUS_GPS};
 
-/// Satellites that a filter has room for.
+/// The number of states of a filter with room for 16 satellites.
 const STATES: usize = states(16);
 
-/// Errors of a station-day.
+/// The errors of a filter on a station-day.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Score {
-    /// Absolute error of the last solution: north, east, up and in three dimensions, mm.
+    /// The absolute error of the last solution: north, east, up and in three dimensions, mm.
     pub final_mm: [f64; 4],
-    /// Root mean square over all epochs after the first hour, mm.
+    /// The root mean square of the errors after the first hour: north, east, up and in three dimensions, mm.
     pub rms_mm: [f64; 4],
-    /// Time from the first epoch to that from which the error stays below 10 cm for 15 minutes.
+    /// The time from the first epoch until the error stays below 10 cm for 15 minutes, min.
     pub convergence_min: Option<f64>,
-    /// Epochs without a solution.
+    /// The number of epochs without a solution.
     pub unsolved: usize,
 }
 
 impl Score {
-    /// Names of its [`numbers`](Self::numbers).
+    /// The names of the [`numbers`](Self::numbers).
     pub const COLUMNS: [&'static str; 10] = [
         "final north_mm",
         "final east_mm",
@@ -40,7 +40,7 @@ impl Score {
         "unsolved",
     ];
 
-    /// As a row of numbers: a time that never came is not a number.
+    /// The score as a row of numbers; NaN for a convergence that never came.
     pub fn numbers(&self) -> [f64; Self::COLUMNS.len()] {
         let [a, b, c, d] = self.final_mm;
         let [e, f, g, h] = self.rms_mm;
@@ -48,7 +48,7 @@ impl Score {
         [a, b, c, d, e, f, g, h, converged, self.unsolved as f64]
     }
 
-    /// From the numbers at the beginning of a row.
+    /// The score that the first numbers of a row stand for.
     pub fn of_numbers(row: &[f64]) -> Self {
         let four = |first: usize| std::array::from_fn(|part| row[first + part]);
         Self {
@@ -59,7 +59,7 @@ impl Score {
         }
     }
 
-    /// Of a day of so many epochs that begins at midnight.
+    /// The score of a day of `epochs` epochs that begins at midnight.
     fn of(fixes: &[Fix], epochs: usize, truth: &Vector3<f64>) -> Self {
         let unsolved = epochs - fixes.len();
         let Some(accuracy) = Accuracy::of(fixes, 0.0, truth) else {
@@ -82,7 +82,7 @@ impl Score {
 pub fn trial(seed: u64, index: u64, filters: &[(Config, bool)]) -> Vec<Score> {
     let days = [Rates::NONE, Rates::RECORDING].map(|rates| Day::new(seed, index, &rates));
     let observations = days.each_ref().map(observations);
-    // Filters of a day beside each other, so that few days keep all threads busy, too.
+    // The filters of a day run in parallel, so that even a few days keep all threads busy.
     filters
         .par_iter()
         .map(|(config, faults)| {
@@ -92,7 +92,7 @@ pub fn trial(seed: u64, index: u64, filters: &[(Config, bool)]) -> Vec<Score> {
         .collect()
 }
 
-/// What the receiver observed, with the products of each satellite.
+/// The observations of the receiver, with the products of each satellite.
 fn observations(day: &Day) -> Vec<Vec<SatelliteObservation<'_>>> {
     let epochs = day.epochs.iter().map(|epoch| {
         let seen = epoch.satellites.iter();
@@ -101,7 +101,7 @@ fn observations(day: &Day) -> Vec<Vec<SatelliteObservation<'_>>> {
     epochs.collect()
 }
 
-/// One filter through one day.
+/// Runs one filter through one day.
 fn follow(day: &Day, observations: &[Vec<SatelliteObservation<'_>>], config: &Config) -> Score {
     let receiver = Receiver {
         antenna: None,
@@ -127,7 +127,7 @@ mod tests {
     use super::*;
     use kestirim_ppp_filter::{Estimator, Motion};
 
-    /// On one day: (plain, default) without faults, and with them.
+    /// The scores (plain, default) on one day without faults, and with them.
     fn plain_and_default(index: u64) -> [[Score; 2]; 2] {
         [Rates::NONE, Rates::RECORDING].map(|rates| {
             let day = Day::new(11, index, &rates);

@@ -1,10 +1,10 @@
-//! One stride of a foot as a smooth curve: where the sensor on it is and how it is turned.
+//! One stride of a foot as a smooth curve: the position and attitude of the sensor on it.
 //!
-//! The foot rolls over its ball, which stays where it is, swings, lands on its heel and rolls flat
-//! over it. Every curve has continuous second derivatives, so forces are continuous too.
+//! The foot rolls over its ball, which stays in place, swings, lands on its heel and rolls flat over it. Every curve
+//! has continuous second derivatives, so forces are continuous too.
 //!
-//! Foot frame: x forward, y left, z up. The position of a pose is that of the sensor on the instep,
-//! zero height when the foot stands flat.
+//! Foot frame: x forward, y left, z up. The position of a pose is that of the sensor on the instep, with zero height
+//! when the foot stands flat.
 
 use std::f64::consts::TAU;
 
@@ -13,61 +13,61 @@ use nalgebra::{UnitQuaternion, Vector3};
 /// Position and attitude of the foot in the room.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
-    /// Of the sensor, m.
+    /// The position of the sensor, m.
     pub position: Vector3<f64>,
-    /// Turns foot (or body) vectors into the room.
+    /// The rotation from the foot (or body) frame to the room.
     pub attitude: UnitQuaternion<f64>,
 }
 
 /// One stride, from leaving one stance to reaching the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stride {
-    /// When the heel begins to rise, s.
+    /// The time at which the heel begins to rise, s.
     pub start_s: f64,
-    /// From then until the foot is flat again, s.
+    /// The time from then until the foot is flat again, s.
     pub moving_s: f64,
-    /// Where the foot stood and will stand, m.
+    /// The positions of the foot before and after the stride, m.
     pub footfalls: [[f64; 2]; 2],
-    /// Yaw of the foot there, rad, anticlockwise from x.
+    /// The yaw of the foot before and after the stride, rad, anticlockwise from x.
     pub yaws: [f64; 2],
-    /// How far the foot is lifted and pitched; 1 is usual.
+    /// The scale of the lift and pitch of the foot; 1 is usual.
     pub vigour: f64,
 }
 
-// Moments of a stride as shares of the time during which the foot moves.
-/// The foot is pitched down most and the ball leaves the ground.
+// Moments of a stride, as shares of the time during which the foot moves.
+/// The moment at which the foot is pitched down most and the ball leaves the ground.
 const TOE_OFF: f64 = 0.38;
-/// The ball begins to move, still under the weight.
+/// The moment at which the ball begins to move, still loaded.
 const BALL_LEAVES: f64 = 0.24;
-/// The rolling begins to pass from the ball to the heel; the foot is nearly level when it has half
+/// The moment at which the rolling begins to pass from the ball to the heel; the foot is nearly level when it has half
 /// passed, so neither end dips below the ground.
 const ROLL_PASSES: f64 = 0.4;
-/// The heel strikes; the toes are up.
+/// The moment at which the heel strikes, toes up.
 const HEEL_STRIKE: f64 = 0.88;
 
-/// Pitch when the ball leaves, rad; negative is toes down.
+/// The pitch when the ball leaves the ground, rad; negative is toes down.
 const TOE_OFF_PITCH: f64 = -60.0 * TAU / 360.0;
-/// Pitch when the heel strikes, rad.
+/// The pitch when the heel strikes, rad.
 const HEEL_STRIKE_PITCH: f64 = 25.0 * TAU / 360.0;
-/// The sensor as seen from the ball and from the heel, m.
+/// The position of the sensor relative to the ball and to the heel, m.
 const FROM_BALL: Vector3<f64> = Vector3::new(-0.10, 0.0, 0.07);
 const FROM_HEEL: Vector3<f64> = Vector3::new(0.12, 0.0, 0.07);
-/// How far the foot is lifted beside its rolling, m.
+/// The lift of the foot in addition to its rolling, m.
 const LIFT: f64 = 0.04;
-/// How far it swings round the other leg, m.
+/// The lateral excursion of the foot round the other leg, m.
 const SIDEWAYS: f64 = 0.02;
-/// The sole rings when the heel strikes: amplitude, m, and frequency, Hz.
+/// The vibration of the sole after heel strike: amplitude, m, and frequency, Hz.
 const RING: Vector3<f64> = Vector3::new(0.3e-3, 0.0, 0.6e-3);
 const RING_HZ: f64 = 25.0;
 
 impl Stride {
-    /// The pose at time `t`, s; standing before and after the stride.
+    /// The pose at time `t`, s; the foot stands before and after the stride.
     pub fn pose(&self, t: f64) -> Pose {
         let share = ((t - self.start_s) / self.moving_s).clamp(0.0, 1.0);
         let swing = between(share, BALL_LEAVES, HEEL_STRIKE);
         let yaw = self.yaws[0] + smooth(swing) * (self.yaws[1] - self.yaws[0]);
         let heading = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw);
-        // A turn about y to the left lowers the toes, hence the sign.
+        // A positive rotation about y, which points left, lowers the toes, hence the sign.
         let pitch = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), -self.pitch(share));
         let rolling = |from_pivot: Vector3<f64>| pitch * from_pivot - from_pivot;
         let on_heel = smooth(between(share, ROLL_PASSES, HEEL_STRIKE));
@@ -85,7 +85,7 @@ impl Stride {
             - up * smooth(between(share, HEEL_STRIKE, 1.0))
     }
 
-    /// The way from footfall to footfall, without the rolling of the foot.
+    /// The displacement from footfall to footfall, without the rolling of the foot.
     fn swung(&self, swing: f64) -> Vector3<f64> {
         let [from, to] = self.footfalls.map(|[x, y]| Vector3::new(x, y, 0.0));
         let way = to - from;
@@ -101,17 +101,17 @@ impl Stride {
     }
 }
 
-/// How far `share` has come from `start` to `end`, 0 to 1.
+/// The progress of `share` from `start` to `end`, 0 to 1.
 fn between(share: f64, start: f64, end: f64) -> f64 {
     ((share - start) / (end - start)).clamp(0.0, 1.0)
 }
 
-/// From 0 to 1 with the least jerk: velocity and acceleration vanish at both ends.
+/// The minimum-jerk transition from 0 to 1: velocity and acceleration vanish at both ends.
 fn smooth(x: f64) -> f64 {
     x * x * x * (10.0 + x * (6.0 * x - 15.0))
 }
 
-/// From 0 to 1 and back, as smoothly.
+/// A smooth bump from 0 to 1 and back.
 fn bump(x: f64) -> f64 {
     let arch = 4.0 * x * (1.0 - x);
     arch * arch * arch

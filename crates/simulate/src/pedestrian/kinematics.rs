@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::gait::Pose;
 
-/// Longest step of the differentiation, s.
+/// The longest step of the numerical differentiation, s.
 const FINE_STEP_S: f64 = 1e-3;
 
 /// Samples of a perfect IMU whose anti-alias filter averages over the sampling period: a sample at
@@ -34,11 +34,10 @@ pub fn ideal_imu(pose: impl Fn(f64) -> Pose, duration_s: f64, rate_hz: f64) -> V
         .collect()
 }
 
-/// Specific force, m/s², and angular rate, rad/s, both in the body frame, between `t` and
-/// `t + step`.
+/// The specific force, m/s², and angular rate, rad/s, both in the body frame, between `t` and `t + step`.
 ///
-/// The rate is that of the one turn which leads from attitude to attitude, so it integrates back
-/// without error; the acceleration is the second difference of the position.
+/// The rate is that of the single rotation from one attitude to the other, so it integrates back without error; the
+/// acceleration is the second difference of the position.
 fn motion(pose: &impl Fn(f64) -> Pose, t: f64, step: f64) -> (Vector3<f64>, Vector3<f64>) {
     let half = step / 2.0;
     let [before, middle, after] = [pose(t), pose(t + half), pose(t + step)];

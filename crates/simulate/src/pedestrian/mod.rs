@@ -1,4 +1,4 @@
-//! Walks that nobody walked: route, gait, and what the sensor makes of them.
+//! Synthetic walks: route, gait, and the sensor's measurements.
 
 pub mod gait;
 pub mod kinematics;

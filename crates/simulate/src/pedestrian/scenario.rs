@@ -1,10 +1,9 @@
 //! The synthetic walk: the paper's route of 12.60 m through a flat, in five legs.
 //!
-//! The paper gives the sum but not the legs, and shows the walker near (6 m, 3 m) towards the end.
-//! Ours go east 3.78 m, north 1.26 m, east 2.52 m, north 1.26 m and back west 3.78 m, with a right
-//! angle between any two. The foot falls on every corner, half turned; its footfalls lie on the
-//! route, so the way from stance to stance is the length of the route exactly. Whoever walks for longer
-//! closes the route to a loop of 17.64 m, and walks that again and again.
+//! The paper gives the sum but not the legs, and shows the walker near (6 m, 3 m) towards the end. The legs here go
+//! east 3.78 m, north 1.26 m, east 2.52 m, north 1.26 m and back west 3.78 m, with a right angle between any two. The
+//! foot falls on every corner, half turned; all footfalls lie on the route, so the distance from stance to stance adds
+//! up to exactly the length of the route. Longer walks close the route to a loop of 17.64 m and repeat it.
 
 use std::f64::consts::{PI, TAU};
 
@@ -16,8 +15,7 @@ use super::gait::{Pose, Stride};
 use super::kinematics::ideal_imu;
 use crate::random::{normal, normal3};
 
-/// A leg of the route: its length, m, and heading, rad anticlockwise from east, and how many
-/// strides it takes.
+/// A leg of the route: its length, m, its heading, rad anticlockwise from east, and its number of strides.
 #[derive(Debug, Clone, Copy)]
 struct Leg {
     length: f64,
@@ -33,24 +31,25 @@ const LEGS: [Leg; 5] = [
     Leg { length: 3.78, heading: PI, strides: 3 },
 ];
 
-/// From the end of [`LEGS`] straight on and back to its start.
+/// The legs from the end of [`LEGS`] straight on and back to its start.
 const WAY_BACK: [Leg; 2] = [
     Leg { length: 2.52, heading: PI, strides: 2 },
     Leg { length: 2.52, heading: 1.5 * PI, strides: 2 },
 ];
 
-/// Share of a stride during which the foot stands.
+/// The share of a stride during which the foot stands.
 const STANCE_SHARE: f64 = 0.4;
-/// Usual time from stance to stance, s, and its spread among walks and among strides.
+/// The usual time from stance to stance, s, and its standard deviations among walks and among strides.
 const STRIDE_S: f64 = 1.15;
 const WALK_SPREAD: f64 = 0.04;
 const STRIDE_SPREAD: f64 = 0.02;
-/// Spread of stride lengths within a leg.
+/// The standard deviation of stride lengths within a leg.
 const LENGTH_SPREAD: f64 = 0.04;
-/// How the sensor sits on the instep: tilt forward, rad, and spread of all angles from walk to walk.
+/// The mounting of the sensor on the instep: forward tilt, rad, and the standard deviation of all angles from walk to
+/// walk.
 const MOUNT_TILT: f64 = 25.0 * PI / 180.0;
 const MOUNT_SPREAD: f64 = 5.0 * PI / 180.0;
-/// People sway: amplitude of roll and pitch, rad, and frequencies, Hz.
+/// The walker's sway: amplitude of roll and pitch, rad, and frequencies, Hz.
 const SWAY: f64 = 0.15 * PI / 180.0;
 const SWAY_HZ: [f64; 2] = [0.31, 0.47];
 
@@ -64,12 +63,12 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// Draws a walk: speed, lengths of strides, mounting and sway differ a little from walk to walk.
+    /// Draws a walk; speed, stride lengths, mounting and sway vary a little from walk to walk.
     pub fn draw<R: Rng + ?Sized>(rng: &mut R) -> Self {
         Self::along(rng, LEGS)
     }
 
-    /// Draws a walk of several rounds through the flat, each back to where it began.
+    /// Draws a walk of several rounds through the flat, each of which ends where it began.
     pub fn draw_rounds<R: Rng + ?Sized>(rng: &mut R, rounds: u32) -> Self {
         let round = |turns| {
             let legs = LEGS.into_iter().chain(WAY_BACK);
@@ -97,7 +96,7 @@ impl Scenario {
         }
     }
 
-    /// Pose of the body frame, the sensor's own, at time `t`, s.
+    /// The pose of the body frame, which is the sensor's, at time `t`, s.
     pub fn pose(&self, t: f64) -> Pose {
         let begun = self.strides.partition_point(|stride| stride.start_s <= t).max(1);
         let Pose { position, attitude } = self.strides[begun - 1].pose(t);
@@ -107,22 +106,22 @@ impl Scenario {
         Pose { position, attitude: attitude * sway * self.mount }
     }
 
-    /// How long it takes, standing before and after included, s.
+    /// The duration, including the standing before and after, s.
     pub fn duration_s(&self) -> f64 {
         self.duration_s
     }
 
-    /// Lengths of the route's legs, m.
+    /// The lengths of the route's legs, m.
     pub fn leg_lengths() -> impl Iterator<Item = f64> {
         LEGS.iter().map(|leg| leg.length)
     }
 
-    /// What a perfect IMU measures on this walk.
+    /// The samples of a perfect IMU on this walk.
     pub fn ideal_imu(&self, rate_hz: f64) -> Vec<Sample> {
         ideal_imu(|t| self.pose(t), self.duration_s, rate_hz)
     }
 
-    /// Where the foot stands: at the start, in the middle of every stance, and at the end.
+    /// The footprints: at the start, in the middle of every stance, and at the end.
     pub fn footprints(&self) -> Vec<Footprint> {
         let start = self.strides.first().map(|first| (first.start_s / 2.0, first.footfalls[0]));
         let next = self.strides.iter().skip(1).map(|stride| stride.start_s);
@@ -178,7 +177,7 @@ mod tests {
     use crate::random::stream;
     use kestirim_replay::metrics::{STANDARD_GRAVITY, polyline_length};
 
-    /// The paper's route, m.
+    /// The length of the paper's route, m.
     const ROUTE_M: f64 = 12.60;
 
     fn scenario() -> Scenario {

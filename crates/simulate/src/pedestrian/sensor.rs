@@ -8,22 +8,22 @@ use rand_core::Rng;
 
 use crate::random::{normal, normal3};
 
-/// Time constant of the slow wandering of a bias, s.
+/// The time constant of the bias's slow wandering, s.
 const WANDER_S: f64 = 100.0;
-/// Steps of a 16-bit converter on either side of zero.
+/// The steps of a 16-bit converter on either side of zero.
 const STEPS: f64 = 32_768.0;
 
-/// Data sheet of three equal axes. Units are those of the triad: m/s² or rad/s.
+/// The specification of a triad of equal axes, in the units of the triad: m/s² or rad/s.
 struct DataSheet {
-    /// Largest value on either side of zero.
+    /// The largest magnitude that the sensor measures.
     range: f64,
-    /// White noise, one-sided, per √Hz.
+    /// The density of the white noise, one-sided, per √Hz.
     noise_density: f64,
-    /// Spread of the bias from one switching on to the next.
+    /// The standard deviation of the turn-on bias.
     turn_on_bias: f64,
-    /// Spread of its wandering afterwards.
+    /// The standard deviation of the bias's wandering after that.
     bias_wander: f64,
-    /// Spread of the scale factor about 1.
+    /// The standard deviation of the scale factor about 1.
     scale: f64,
 }
 
@@ -46,7 +46,7 @@ const GYROSCOPE: DataSheet = DataSheet {
     scale: 0.0075,
 };
 
-/// Bias and scale of three axes as they came out when the sensor was switched on.
+/// The biases and scale factors of three axes, as drawn when the sensor was switched on.
 struct Triad {
     sheet: DataSheet,
     bias: [f64; 3],
@@ -57,7 +57,7 @@ struct Triad {
 impl Triad {
     fn draw<R: Rng + ?Sized>(rng: &mut R, sheet: DataSheet) -> Self {
         let bias = normal3(rng, sheet.turn_on_bias)
-            // No sensor leaves the factory beyond twice the spread.
+            // No sensor leaves the factory with more than twice this standard deviation.
             .map(|bias| bias.clamp(-2.0 * sheet.turn_on_bias, 2.0 * sheet.turn_on_bias));
         let wander = normal3(rng, sheet.bias_wander);
         let scale = normal3(rng, sheet.scale).map(|error| 1.0 + error);
@@ -80,7 +80,7 @@ impl Triad {
     }
 }
 
-/// What a Razor, just switched on, makes of the samples of a perfect IMU taken at `rate_hz`.
+/// Distorts the samples of a perfect IMU at `rate_hz` as a Razor does that was just switched on.
 pub fn measure<R: Rng + ?Sized>(rng: &mut R, ideal: &[Sample], rate_hz: f64) -> Vec<Sample> {
     let mut accelerometer = Triad::draw(rng, ACCELEROMETER);
     let mut gyroscope = Triad::draw(rng, GYROSCOPE);

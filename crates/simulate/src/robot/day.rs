@@ -1,4 +1,4 @@
-//! One trial of the paper's office: every filter on the same ranges.
+//! One trial in the paper's office: every filter on the same ranges.
 
 use kestirim_replay::ScalarKind;
 use kestirim_replay::metrics::{distance, mean, rms};
@@ -10,9 +10,9 @@ use kestirim_replay::robot::{
 use super::scenario::{self, ANCHORS, EPOCHS, Office};
 use crate::random::stream;
 
-/// In how many ways a point is measured.
+/// The number of ways in which a point is measured.
 pub const COLUMNS: usize = 8;
-/// How these are called, …
+/// The names of the ways to measure a point.
 pub const WAYS: [&str; COLUMNS] = [
     "lsq",
     "ekf from truth",
@@ -23,20 +23,20 @@ pub const WAYS: [&str; COLUMNS] = [
     "ours",
     "ours calibrated",
 ];
-/// … and the ways to follow the line.
+/// The names of the ways to follow the line.
 pub const LINES: [&str; 5] = ["lsq", "ekf", "aekf", "ours", "ours calibrated"];
 
-/// One office on one day.
+/// The errors in one office on one day.
 #[derive(Debug)]
 pub struct Day {
-    /// Errors of the columns at each point, cm.
+    /// The errors of each way at each point, cm.
     pub points: [[f64; COLUMNS]; 15],
-    /// Errors of the five ways to follow the line, cm.
+    /// The errors of the five ways to follow the line, cm.
     pub line: [f64; 5],
 }
 
 impl Day {
-    /// A day by its number.
+    /// Simulates the day with this number.
     ///
     /// # Errors
     /// As [`build`].
@@ -67,14 +67,14 @@ impl Day {
     }
 }
 
-/// The ways to measure a point, in the order of the columns.
+/// The trackers that measure a point, in the order of the columns.
 fn trackers(
     plain: &Setup,
     calibrated: &Setup,
     place: [f64; 2],
     trial: u64,
 ) -> Result<[Box<dyn Follow>; COLUMNS], robot::Error> {
-    // Beside the point, every day in another direction: turned by the golden angle.
+    // A start beside the point, in another direction every day: rotated by the golden angle.
     let angle = 2.399_963_229_728_653 * trial as f64;
     let beside = [place[0] + 0.1 * angle.cos(), place[1] + 0.1 * angle.sin()];
     let published = |start, noise| build_published(plain, Beginning { start, noise });

@@ -1,4 +1,4 @@
-//! What the simulation draws.
+//! The simulated office, its paths and its radios.
 
 pub mod day;
 pub mod radio;

@@ -1,6 +1,6 @@
-//! What radios stamp: two-way exchanges, and messages of anchors that a tag only hears, each on a clock of its own.
+//! Timestamps of radios: two-way exchanges, and messages of anchors that a tag only receives, each on its own clock.
 //!
-//! A clock is up to 20 ppm wrong, and its counter of 40 bits begins anywhere, so that it goes round within 17 s.
+//! The rate of a clock is up to 20 ppm off, and its counter of 40 bits starts anywhere, so it wraps within 17 s.
 
 use kestirim_uwb_ranging::{Heard, SPEED_OF_LIGHT, TICKS_PER_SECOND, Timestamp};
 use rand_core::Rng;
@@ -18,26 +18,26 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// One that begins anywhere, at any rate within ± 20 ppm.
+    /// Draws a clock that starts anywhere, with a rate error within ±20 ppm.
     pub fn draw<R: Rng>(rng: &mut R) -> Self {
         let start = (uniform(rng) * (1_u64 << 40) as f64) as u64;
         Self { start, rate: 1.0 + (2.0 * uniform(rng) - 1.0) * LARGEST_PPM * 1e-6 }
     }
 
-    /// What it stamps at a time, s, in whole ticks.
+    /// The timestamp at a time, s, in whole ticks.
     pub fn at(&self, seconds: f64) -> Timestamp {
         let ticks = (seconds * self.rate * TICKS_PER_SECOND).round() as i64;
         Timestamp::new(self.start.wrapping_add(ticks as u64))
     }
 
-    /// The same of a reception, which errs by a standard deviation, m.
+    /// The timestamp of a reception, with an error of standard deviation `sigma`, m.
     fn received<R: Rng>(&self, rng: &mut R, seconds: f64, sigma: f64) -> Timestamp {
         self.at(seconds + normal(rng, sigma) / SPEED_OF_LIGHT)
     }
 }
 
-/// A poll, a response and a final message over a distance, m, each sent and received: with the two times after which they are
-/// answered, s, and the standard deviation of a reception, m.
+/// The six timestamps of a poll, a response and a final message over a distance, m, each sent and received. `replies`
+/// are the two reply times, s, and `sigma` is the standard deviation of a reception, m.
 pub fn exchange<R: Rng>(
     rng: &mut R,
     [tag, anchor]: [&Clock; 2],
@@ -60,33 +60,34 @@ pub fn exchange<R: Rng>(
     ]
 }
 
-/// Anchors that send at random times, as those of Crazyflie's TDOA 3 do, and say what they heard of each other.
+/// Anchors that transmit at random times, as those of Crazyflie's TDOA 3 do, and report what they received from each
+/// other.
 #[derive(Debug, Clone)]
 pub struct Network {
-    /// Where the anchors are, m.
+    /// The positions of the anchors, m.
     pub anchors: Vec<[f64; 3]>,
-    /// Mean time between two messages of one anchor, s.
+    /// The mean time between two messages of one anchor, s.
     pub interval: f64,
-    /// Standard deviation of a reception at the tag and at an anchor, m.
+    /// The standard deviations of a reception at the tag and at an anchor, m.
     pub sigmas: [f64; 2],
-    /// Share of the messages that are lost, at the tag and at each anchor by itself.
+    /// The share of lost messages, independently at the tag and at each anchor.
     pub loss: f64,
 }
 
 /// A message as the tag received it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Received {
-    /// When it was sent, s.
+    /// The time of transmission, s.
     pub seconds: f64,
-    /// Who sent it.
+    /// The index of the transmitting anchor.
     pub anchor: usize,
-    /// Its number, which goes round at 128.
+    /// The sequence number, which wraps at 128.
     pub sequence: u8,
-    /// When the anchor sent it, on its clock.
+    /// The time of transmission on the anchor's clock.
     pub sent: Timestamp,
-    /// When the tag received it, on its clock.
+    /// The time of reception on the tag's clock.
     pub received: Timestamp,
-    /// What the anchor heard of the others before.
+    /// The messages that the anchor had received from the others.
     pub heard: Vec<Heard>,
 }
 
@@ -99,7 +100,7 @@ struct Anchor {
 }
 
 impl Network {
-    /// What a tag that moves along `path` (s to m) hears within so many seconds.
+    /// The messages that a tag receives within `seconds` while it moves along `path` (s to m).
     pub fn heard<R: Rng>(
         &self,
         rng: &mut R,
@@ -163,11 +164,13 @@ impl Anchor {
     }
 }
 
-/// The least standard deviation of a two-way distance from six stamps, m (Cramér and Rao), when nothing is known of the two
-/// clocks' offset and rates: three flights, of which three unknowns are found, so the estimate is unique. With equal answers
-/// it is that of known rates, √(3/8) of a reception's.
+/// The Cramér–Rao bound for the standard deviation of a two-way distance from six timestamps, m, when nothing is known
+/// of the two clocks' offset and rates.
+///
+/// Three flights determine three unknowns, so the estimate is unique. With equal reply times it equals that of known
+/// rates, √(3/8) of a reception's.
 pub fn least_two_way_sigma([first, second]: [f64; 2], sigma: f64) -> f64 {
-    // Receptions at times 0, D₁ and D₁ + D₂: a straight line through the first and the last, at the second.
+    // Receptions at times 0, D₁ and D₁ + D₂: a straight line through the first and the last, evaluated at the second.
     let share = first / (first + second);
     0.5 * sigma * ((1.0 - share).powi(2) + 1.0 + share.powi(2)).sqrt()
 }

@@ -1,8 +1,8 @@
-//! The paper's office, and what goes wrong with ranges in it.
+//! The paper's office, and the errors of ranges in it.
 //!
-//! The error model and its numbers are those of 90 recorded points in a room with the same layout (biases,
-//! noise) and of recordings with a person in the way (blocking); how often reflections come was chosen so that
-//! trilateration errs as much as the paper's does.
+//! The error model and its numbers are those of 90 recorded points in a room with the same layout (biases, noise) and
+//! of recordings with a person in the way (blocking); the frequency of reflections was chosen so that trilateration
+//! errs as much as the paper's does.
 
 use kestirim_replay::metrics::{distance, median};
 use kestirim_replay::robot::{Anchors, RangeRow};
@@ -11,7 +11,7 @@ use rand_distr::{Distribution, Exp};
 
 use crate::random::{normal, uniform};
 
-/// The anchors A1 to A4, m.
+/// The positions of the anchors A1 to A4, m.
 pub const ANCHORS: [[f64; 3]; 4] =
     [[0.0, 0.0, 0.0], [4.8, 6.4, 0.0], [0.0, 6.4, 0.0], [4.8, 0.0, 0.0]];
 /// The anchors with their names.
@@ -20,37 +20,37 @@ pub fn office_anchors() -> Anchors {
     Anchors { names, positions: ANCHORS.to_vec() }
 }
 
-/// Epochs at each point.
+/// The number of epochs at each point.
 pub const EPOCHS: usize = 50;
-/// Time between epochs, µs.
+/// The time between epochs, µs.
 pub const EPOCH_US: i64 = 100_000;
 
-/// What the common bias of all links is, m; per anchor and per link it differs by these standard deviations.
+/// The common bias of all links, m; anchors and links deviate from it by `ANCHOR_SIGMA` and `LINK_SIGMA`.
 pub const COMMON_BIAS: f64 = 0.19;
-/// Standard deviation of the bias of an anchor, the same everywhere, m.
+/// The standard deviation of an anchor's bias, which is the same everywhere, m.
 pub const ANCHOR_SIGMA: f64 = 0.057;
-/// Standard deviation of the bias of a link between an anchor and a place, m.
+/// The standard deviation of the bias of a link between an anchor and a place, m.
 pub const LINK_SIGMA: f64 = 0.067;
-/// Standard deviation of the white noise, m.
+/// The standard deviation of the white noise, m.
 pub const NOISE_SIGMA: f64 = 0.03;
 
-/// A reflection begins in this share of the epochs of a link, …
+/// The probability per epoch that a reflection begins on a link.
 const BURST_BEGINS: f64 = 0.006;
-/// … ends in this share of those it lasts, …
+/// The probability per epoch that a reflection ends.
 const BURST_ENDS: f64 = 0.1;
-/// … and lengthens the range by this on average, m.
+/// The mean length that a reflection adds to the range, m.
 const BURST_MEAN: f64 = 0.3;
-/// In this share of the points a person stands in the way of one link for 20 epochs, …
+/// The share of the points at which a person blocks one link, and the number of epochs for which it is blocked.
 const BLOCKED: f64 = 1.0 / 3.0;
 const BLOCKED_EPOCHS: usize = 20;
-/// … which lengthens it by something between these, m.
+/// The interval of the length that a blocked link adds to the range, m.
 const BLOCKED_FROM: f64 = 0.2;
 const BLOCKED_TO: f64 = 0.8;
-/// The robot drives at this speed, m/s, from one point of the office to another.
+/// The speed of the robot, m/s, and the corners of its paths: a line, and a round through the office, m.
 const SPEED: f64 = 0.2;
 const LINE: [[f64; 2]; 2] = [[0.8, 0.8], [4.0, 5.6]];
 const ROUND: [[f64; 2]; 5] = [[0.8, 0.8], [4.0, 0.8], [4.0, 5.6], [0.8, 5.6], [0.8, 0.8]];
-/// Who meets a crowd has a person before each anchor in turn, for this share of the path.
+/// In a crowd, a person blocks each anchor in turn for one part in this many of the path.
 const CROWD_SHARE: usize = 6;
 
 /// The fifteen points, m. The paper does not say where its own were.
@@ -61,7 +61,7 @@ pub fn points() -> [[f64; 2]; 15] {
     })
 }
 
-/// Six marked places between them, at which the anchors are calibrated, m.
+/// Six marked places between the points, at which the anchors are calibrated, m.
 pub fn marks() -> [[f64; 2]; 6] {
     std::array::from_fn(|index| {
         let (column, row) = (index % 2, index / 2);
@@ -69,17 +69,17 @@ pub fn marks() -> [[f64; 2]; 6] {
     })
 }
 
-/// Where the robot is at each epoch of its straight line, m.
+/// The positions of the robot on its straight line, at each epoch, m.
 pub fn line() -> Vec<[f64; 2]> {
     along(&LINE)
 }
 
-/// And of a round through the office, back to where it began.
+/// The positions of the robot on a round through the office, at each epoch, m; it ends where it began.
 pub fn round() -> Vec<[f64; 2]> {
     along(&ROUND)
 }
 
-/// At each epoch of a path from corner to corner.
+/// The positions at each epoch of a path from corner to corner, m.
 fn along(corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let stretch = |(from, to): (&[f64; 2], &[f64; 2])| {
         let (from, to) = (*from, *to);
@@ -93,7 +93,7 @@ fn along(corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
     corners.first().copied().into_iter().chain(stretches).collect()
 }
 
-/// An office on one day: what its anchors measure too long.
+/// An office on one day, with the biases of its anchors.
 #[derive(Debug, Clone, Copy)]
 pub struct Office {
     biases: [f64; 4],
@@ -105,14 +105,14 @@ impl Office {
         Self { biases: std::array::from_fn(|_| COMMON_BIAS + normal(rng, ANCHOR_SIGMA)) }
     }
 
-    /// Ranges along a path, four at each epoch.
+    /// The ranges along a path, four at each epoch.
     pub fn measure<R: Rng>(&self, rng: &mut R, path: &[[f64; 2]]) -> Vec<RangeRow> {
         let links = self.links(rng);
         let person = Person::draw(rng, path.len());
         Self::ranges(rng, path, links, &[person])
     }
 
-    /// The same in a crowd: before each anchor somebody stands for a while, one after the other.
+    /// The ranges along a path in a crowd: a person blocks each anchor for a while, one after the other.
     pub fn measure_in_a_crowd<R: Rng>(&self, rng: &mut R, path: &[[f64; 2]]) -> Vec<RangeRow> {
         let links = self.links(rng);
         let persons = std::array::from_fn::<_, 4, _>(|anchor| {
@@ -126,7 +126,7 @@ impl Office {
         Self::ranges(rng, path, links, &persons)
     }
 
-    /// What each anchor measures too long, m: the median at the marked places.
+    /// The measured bias of each anchor, m: the median at the marked places.
     pub fn calibrate<R: Rng>(&self, rng: &mut R) -> Vec<f64> {
         let mut excess = [const { Vec::new() }; 4];
         for place in marks() {
@@ -139,7 +139,7 @@ impl Office {
         excess.iter().map(|excess| median(excess)).collect()
     }
 
-    /// What the links from a place to the anchors measure too long, m.
+    /// The biases of the links from a place to the anchors, m.
     fn links<R: Rng>(&self, rng: &mut R) -> [f64; 4] {
         self.biases.map(|bias| bias + normal(rng, LINK_SIGMA))
     }
@@ -170,7 +170,7 @@ impl Office {
     }
 }
 
-/// By how much a reflection lengthens the range in the next epoch, m.
+/// The length that a reflection adds to the range in the next epoch, m.
 fn next_burst<R: Rng>(rng: &mut R, burst: f64) -> f64 {
     let chance: f64 = uniform(rng);
     if burst > 0.0 {
@@ -182,7 +182,7 @@ fn next_burst<R: Rng>(rng: &mut R, burst: f64) -> f64 {
     Exp::new(1.0 / BURST_MEAN).map_or(0.0, |size| size.sample(rng))
 }
 
-/// Somebody in the way of one link for a while.
+/// A person who blocks one link for a while.
 #[derive(Debug, Clone, Copy)]
 struct Person {
     anchor: usize,

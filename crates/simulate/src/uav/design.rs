@@ -1,4 +1,4 @@
-//! Gains: what each estimator of the thesis is.
+//! Gains of the thesis' estimators.
 
 use kestirim_observer_design::{Complex, Discrete, Error, error_covariance, riccati};
 use kestirim_replay::uav::{Noise, Poles, discrete};
@@ -11,19 +11,19 @@ use crate::uav::scenario::INTERVAL_S;
 /// An estimator to be designed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
-    /// The steady-state filter for noise of so many times the variance on the inputs as on the outputs, which
-    /// all have the same.
+    /// The steady-state filter for a variance of the input noise of this multiple of that of the output noise, each
+    /// equal for all channels.
     Ratio(f64),
-    /// The steady-state filter for the noise there is.
+    /// The steady-state filter for the true noise.
     Matched(Noise),
-    /// The filter for the noise there is whose gain starts from what is known of the start.
+    /// The filter for the true noise, with a time-varying gain that starts from the initial covariance.
     TimeVarying(Noise),
-    /// An observer with these poles, 1/s.
+    /// A Luenberger observer with these poles, 1/s.
     Luenberger(Poles),
 }
 
 impl Kind {
-    /// For a table.
+    /// The name for tables.
     pub fn name(&self) -> String {
         match self {
             Self::Ratio(ratio) => format!("Kalman Q/R = {ratio}"),
@@ -38,7 +38,7 @@ impl Kind {
         }
     }
 
-    /// Of which family it is.
+    /// The family of the estimator.
     pub fn family(&self) -> Family {
         match self {
             Self::Ratio(_) | Self::Matched(_) => Family::Kalman,
@@ -47,7 +47,7 @@ impl Kind {
         }
     }
 
-    /// L of x̂⁺ = A·x̂ + B·u + L·(y − C·x̂); for a time-varying filter the one at which it settles.
+    /// The gain L of x̂⁺ = A·x̂ + B·u + L·(y − C·x̂); for a time-varying filter the gain to which it converges.
     ///
     /// # Errors
     /// Why there is none.
@@ -69,7 +69,7 @@ impl Kind {
         }
     }
 
-    /// The estimator at work, from a start that is `off` from the truth; only a time-varying filter is told.
+    /// The running estimator, from a start that is `off` from the truth; only a time-varying filter uses `off`.
     ///
     /// # Errors
     /// Why it does not exist.
@@ -90,20 +90,20 @@ impl Kind {
     }
 }
 
-/// Kinds of estimators.
+/// A family of estimators.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Family {
     /// Steady-state Kalman filters.
     Kalman,
-    /// Kalman filters with P₀.
+    /// Time-varying Kalman filters, with P₀.
     TimeVarying,
     /// Luenberger observers.
     Luenberger,
 }
 
-/// RMSE of α, q, V, θ of an estimator that has settled, from Lyapunov's equation.
+/// The RMSE of α, q, V, θ of a converged estimator, from the Lyapunov equation.
 ///
 /// # Errors
 /// Why there is none.

@@ -1,4 +1,4 @@
-//! Errors of estimators that meet the same noise, flight by flight.
+//! Errors of estimators that are given the same noise, flight by flight.
 
 use kestirim_replay::ScalarKind;
 use kestirim_scalar::{Q16_16, Scalar};
@@ -11,21 +11,21 @@ use crate::random::stream;
 use crate::uav::scenario::{INTERVAL_S, fly};
 use crate::with_outputs;
 
-/// Of an estimator on a flight.
+/// The errors of an estimator on a flight.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Errors {
-    /// Sums of squares of the errors of α (rad), q (rad/s), V (m/s), θ (rad), sample by sample.
+    /// The sums over all samples of the squared errors of α (rad), q (rad/s), V (m/s), θ (rad).
     pub squares: [f64; 4],
-    /// Steps that the scalar could not take.
+    /// The number of steps that failed in this scalar.
     pub refused: u32,
 }
 
-/// Flies the flight of a number, and tells of each estimator.
+/// Simulates the flight with a number, and returns the errors of each estimator.
 pub type Flights = Box<dyn Fn(u64) -> Vec<Errors> + Send + Sync>;
 
 impl Flight {
-    /// Many flights with these estimators, whose noise a seed and the number of a flight decide. What they err in the first
-    /// `settling` samples does not count.
+    /// Prepares many flights with these estimators; a seed and the number of a flight determine the noise. Errors in
+    /// the first `settling` samples are not counted.
     ///
     /// # Errors
     /// Why there is no such estimator.

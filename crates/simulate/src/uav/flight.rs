@@ -1,4 +1,4 @@
-//! An estimator beside its plant, sample by sample.
+//! Runs an estimator alongside its plant, sample by sample.
 
 use kestirim_replay::ScalarKind;
 use kestirim_replay::uav::{Noise, Plant};
@@ -12,43 +12,43 @@ use crate::uav::plant::Outputs;
 use crate::uav::scenario::{INTERVAL_S, Inputs, Sample, fly};
 use crate::with_outputs;
 
-/// A flight, and where an estimator starts on it.
+/// A flight, and the initial state of an estimator on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flight {
     /// The aircraft.
     pub plant: Plant,
-    /// What is measured.
+    /// The measured states.
     pub outputs: Outputs,
-    /// What the pilot does.
+    /// The pilot's inputs.
     pub inputs: Inputs,
     /// The noise.
     pub noise: Noise,
-    /// Where the plant starts.
+    /// The initial state of the plant.
     pub truth: [f64; 4],
-    /// Where the estimator starts.
+    /// The initial state of the estimator.
     pub start: [f64; 4],
-    /// How long it takes.
+    /// The duration in samples.
     pub samples: usize,
 }
 
-/// A sample, and what was expected of it before it was measured.
+/// A sample, and its estimate before it was measured.
 #[derive(Debug, Clone, Copy)]
 pub struct Moment {
-    /// Truth, input and all states as measured.
+    /// The true state, the input, and all states as measured.
     pub sample: Sample,
-    /// x̂.
+    /// The estimate x̂.
     pub estimate: SVector<f64, 4>,
 }
 
 impl Moment {
-    /// x − x̂.
+    /// The estimation error x − x̂.
     pub fn error(&self) -> SVector<f64, 4> {
         self.sample.x - self.estimate
     }
 }
 
 impl Flight {
-    /// Flies with an estimator in this scalar; every estimator meets the same noise of a seed.
+    /// Runs an estimator in this scalar; every estimator is given the same noise for the same seed.
     ///
     /// # Errors
     /// Why there is no such estimator.
@@ -75,7 +75,7 @@ fn follow<T: Scalar, const P: usize>(
         .take(flight.samples)
         .map(|sample| {
             let estimate = estimator.estimate();
-            // Where fixed point is at its rails, the estimate stays, and so does its error.
+            // Where fixed point saturates, the estimate stays as it is, and so does its error.
             let _ = estimator.step(&sample.u, &sample.measured(c));
             Moment { sample, estimate }
         })

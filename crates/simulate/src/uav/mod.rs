@@ -1,4 +1,4 @@
-//! Flights of known aircraft, with the noise of their sensors.
+//! Flights of known aircraft, with sensor noise.
 
 pub mod design;
 pub mod errors;

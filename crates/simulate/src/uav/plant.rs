@@ -1,14 +1,14 @@
-//! The aircraft, and what of them is measured.
+//! The aircraft, and the choice of measured states.
 
-/// States, as they are shown.
+/// The symbols of the states.
 pub const STATES: [&str; 4] = ["α", "q", "V", "θ"];
-/// What they are.
+/// The names of the states.
 pub const STATE_NAMES: [&str; 4] = ["angle of attack", "pitch rate", "airspeed", "pitch"];
-/// Their units.
+/// The units of the states.
 pub const STATE_UNITS: [&str; 4] = ["rad", "rad/s", "m/s", "rad"];
-/// As parts of the names of figures.
+/// The states as parts of the names of figures.
 pub const STATE_SLUGS: [&str; 4] = ["alpha", "pitch-rate", "airspeed", "pitch"];
-/// As columns of a stream.
+/// The states as columns of a stream.
 pub const STREAM_COLUMNS: [&str; 4] = ["alpha_rad", "q_rad_s", "v_m_s", "theta_rad"];
 
 /// What is measured: the last so many states.
@@ -29,10 +29,10 @@ pub enum Outputs {
 }
 
 impl Outputs {
-    /// All.
+    /// All choices of outputs.
     pub const ALL: [Self; 3] = [Self::Full, Self::RateAirspeedPitch, Self::AirspeedPitch];
 
-    /// How many.
+    /// The number of outputs.
     pub fn count(self) -> usize {
         match self {
             Self::Full => 4,
@@ -41,7 +41,7 @@ impl Outputs {
         }
     }
 
-    /// For a table.
+    /// The name for tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Full => "all",

@@ -1,4 +1,4 @@
-//! Ten seconds of flight: inputs, noise, and where plant and estimator start.
+//! Ten seconds of flight: inputs, noise, and the initial states of plant and estimator.
 
 use std::f64::consts::TAU;
 
@@ -9,32 +9,32 @@ use rand_core::Rng;
 
 use crate::random::normal;
 
-/// Time between samples, s.
+/// The time between samples, s.
 pub const INTERVAL_S: f64 = 0.01;
-/// Samples of the thesis' flights: 10 s.
+/// The number of samples of the thesis' flights: 10 s.
 pub const SAMPLES: usize = 1000;
 
-/// Where the plant starts: the thesis' airspeed and pitch angle.
+/// The initial state of the plant: the thesis' airspeed and pitch angle.
 pub const START: [f64; 4] = [0.0, 0.0, 40.0, 0.53];
-/// Where an estimator starts that knows a little …
+/// An initial estimate close to the plant's.
 pub const NEAR: [f64; 4] = [0.1, 0.1, 35.0, 0.4];
-/// … and one that knows less.
+/// An initial estimate far from the plant's.
 pub const FAR: [f64; 4] = [0.2, 0.2, 20.0, 0.2];
 
-/// What the pilot does.
+/// The pilot's inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub enum Inputs {
-    /// Elevator 0.025, throttle 0.155.
+    /// Constant: elevator 0.025, throttle 0.155.
     Constant,
-    /// The same as amplitudes of sines of 0.5 and 0.2 Hz.
+    /// Sines of 0.5 and 0.2 Hz, with the constant inputs as amplitudes.
     Sine,
-    /// Nothing.
+    /// No input.
     None,
 }
 
 impl Inputs {
-    /// At a sample.
+    /// The input at a sample.
     pub fn at(self, sample: usize) -> SVector<f64, 2> {
         let t = sample as f64 * INTERVAL_S;
         let [elevator, throttle] = [0.025, 0.155];
@@ -45,7 +45,7 @@ impl Inputs {
         })
     }
 
-    /// For a table.
+    /// The name for tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Constant => "constant",
@@ -67,13 +67,13 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Outputs y = C x as measured.
+    /// The outputs y = C x, as measured.
     pub fn measured<const P: usize>(&self, c: &SMatrix<f64, P, 4>) -> [Option<f64>; P] {
         <[f64; P]>::from(c * self.y).map(Some)
     }
 }
 
-/// A flight from `start`, sample by sample, without end.
+/// An endless flight from `start`, sample by sample.
 pub fn fly<R: Rng>(
     plant: Discrete<4, 2>,
     start: SVector<f64, 4>,

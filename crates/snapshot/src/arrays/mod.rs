@@ -1,7 +1,7 @@
-//! Arrays of any length, of any element: serde itself has them up to 32 only, and of no generic length.
+//! Arrays of any length and any element: serde itself supports up to 32 elements only, and no generic length.
 //!
 //! `#[serde(with = "kestirim_snapshot::arrays")]` is for `[E; N]`, [`rows`] for `[[E; N]; M]` and [`optional`] for
-//! `Option<[E; N]>`. Another number of elements than the type has is an error of the format, never a panic.
+//! `Option<[E; N]>`. A number of elements other than the type's is an error of the format, never a panic.
 
 pub mod optional;
 pub mod rows;
@@ -12,7 +12,7 @@ use core::marker::PhantomData;
 use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
 use serde::ser::{Serialize, SerializeTuple, Serializer};
 
-/// Writes `N` elements, without their number.
+/// Writes the `N` elements, without their number.
 ///
 /// # Errors
 /// Those of the format.
@@ -47,7 +47,7 @@ impl<'de, E: Deserialize<'de> + Copy, const N: usize> Visitor<'de> for Elements<
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<[E; N], A::Error> {
-        // Of no elements there is no first one to fill the array with.
+        // An empty array has no first element to fill it with.
         if let Ok(none) = <[E; N]>::try_from([].as_slice()) {
             return Ok(none);
         }
@@ -61,7 +61,7 @@ impl<'de, E: Deserialize<'de> + Copy, const N: usize> Visitor<'de> for Elements<
     }
 }
 
-/// A row of a matrix that is written.
+/// A row of a matrix to be written.
 struct RowOf<'a, E, const N: usize>(&'a [E; N]);
 
 impl<E: Serialize, const N: usize> Serialize for RowOf<'_, E, N> {
@@ -70,7 +70,7 @@ impl<E: Serialize, const N: usize> Serialize for RowOf<'_, E, N> {
     }
 }
 
-/// A row of a matrix that is read.
+/// A row of a matrix that was read.
 #[derive(Clone, Copy)]
 struct Row<E, const N: usize>([E; N]);
 
@@ -80,10 +80,10 @@ impl<'de, E: Deserialize<'de> + Copy, const N: usize> Deserialize<'de> for Row<E
     }
 }
 
-/// Reads an index that is less than `N`: what indexes an array of `N` elements.
+/// Reads an index less than `N`, for an array of `N` elements.
 ///
 /// # Errors
-/// Those of the format, and if it is not less.
+/// Those of the format, and if the index is not less than `N`.
 pub fn index<'de, D: Deserializer<'de>, const N: usize>(
     deserializer: D,
 ) -> Result<usize, D::Error> {
@@ -91,10 +91,10 @@ pub fn index<'de, D: Deserializer<'de>, const N: usize>(
     if index < N { Ok(index) } else { Err(D::Error::custom("an index beyond its array")) }
 }
 
-/// Reads a count of at most `N`: of the elements of an array of `N` that are in use.
+/// Reads a count of at most `N`, of the elements in use of an array of `N`.
 ///
 /// # Errors
-/// Those of the format, and if it is more.
+/// Those of the format, and if the count is above `N`.
 pub fn count<'de, D: Deserializer<'de>, const N: usize>(
     deserializer: D,
 ) -> Result<usize, D::Error> {

@@ -2,7 +2,7 @@
 
 use super::{Deserialize, Deserializer, Row, RowOf, Serialize, Serializer};
 
-/// Writes the elements, if there are any.
+/// Writes the elements, if the array is present.
 ///
 /// # Errors
 /// Those of the format.
@@ -13,7 +13,7 @@ pub fn serialize<S: Serializer, E: Serialize, const N: usize>(
     array.as_ref().map(RowOf).serialize(serializer)
 }
 
-/// Reads the elements, if there are any.
+/// Reads the elements, if the array is present.
 ///
 /// # Errors
 /// Those of the format, and if there are not `N` elements.

@@ -1,4 +1,4 @@
-//! Rows as text.
+//! Rows as CSV.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -10,7 +10,7 @@ use csv::{ReaderBuilder, StringRecord, WriterBuilder};
 use super::Told;
 use crate::{Column, Error, Value};
 
-/// What begins a comment.
+/// The character that begins a comment.
 const COMMENT: u8 = b'#';
 
 #[derive(Debug)]
@@ -23,7 +23,7 @@ impl Writer {
     pub(super) fn new(file: File, columns: &[Column], head: &str) -> io::Result<Self> {
         let mut file = BufWriter::new(file);
         writeln!(file, "# {head}")?;
-        // A text that begins as a comment does is quoted.
+        // A text that begins like a comment is quoted.
         let mut rows = WriterBuilder::new().comment(Some(COMMENT)).from_writer(file);
         rows.write_record(columns.iter().map(|column| &column.name))?;
         Ok(Self { rows, text: String::new() })
@@ -32,7 +32,7 @@ impl Writer {
     pub(super) fn write(&mut self, row: &[Value]) -> io::Result<()> {
         for value in row {
             self.text.clear();
-            // A text takes whatever is written to it.
+            // Writing to a `String` cannot fail.
             let _ = write!(self.text, "{value}");
             self.rows.write_field(&self.text)?;
         }
@@ -95,7 +95,7 @@ fn wrong(path: &Path, error: &csv::Error) -> Error {
     }
 }
 
-/// What stands in a comment; nothing if it is none.
+/// The content of a comment line; empty if the line is not a comment.
 fn comment(line: &[u8]) -> String {
     let text = std::str::from_utf8(line).unwrap_or_default();
     text.strip_prefix('#').map_or_else(String::new, |text| text.trim().to_owned())

@@ -1,7 +1,7 @@
-//! Files of rows: CSV, and Parquet if it is built in, by their endings.
+//! Files of rows: CSV, and Parquet if it is built in, told apart by the file extension.
 //!
-//! A CSV file begins with a comment, which tells where its rows come from, and ends with one, which tells how many there
-//! are and what was read: a line of `#` and a JSON object each. In a Parquet file both are metadata.
+//! A CSV file begins with a comment on the origin of its rows, and ends with a comment on their number and the files
+//! that were read: each a line with `#` and a JSON object. In a Parquet file, both are metadata.
 
 mod csv_file;
 #[cfg(feature = "parquet")]
@@ -17,10 +17,10 @@ use serde_json::Value as Json;
 
 use crate::{Column, Error, Value};
 
-/// Endings of files of rows.
+/// The extensions of files of rows.
 pub const ENDINGS: &[&str] = if cfg!(feature = "parquet") { &["csv", "parquet"] } else { &["csv"] };
 
-/// The format of a file by its ending.
+/// The format of a file, given by its extension.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Format {
     Csv,
@@ -48,15 +48,15 @@ impl Format {
     }
 }
 
-/// Whether a file would be one of rows.
+/// Checks that the extension of a file is one of a file of rows.
 ///
 /// # Errors
-/// [`Error::File`] if its ending says that it would not.
+/// [`Error::File`] if it is not.
 pub fn check_ending(path: &Path) -> Result<(), Error> {
     Format::of(path).map(|_| ())
 }
 
-/// A file of rows that is being written: beside its place, and there once it is whole.
+/// The writer of a file of rows: it writes a draft beside the file's place, and renames it once it is complete.
 #[derive(Debug)]
 pub struct Writer {
     path: PathBuf,
@@ -73,10 +73,10 @@ enum Open {
 }
 
 impl Writer {
-    /// Begins a file with what is known of its rows.
+    /// Creates a file with its columns and head.
     ///
     /// # Errors
-    /// [`Error::File`] for another ending, [`Error::Write`].
+    /// [`Error::File`] for an unknown file extension; [`Error::Write`].
     pub fn create(path: &Path, columns: &[Column], head: &impl Serialize) -> Result<Self, Error> {
         let format = Format::of(path)?;
         let failed = Error::write(path);
@@ -91,8 +91,8 @@ impl Writer {
             remove_abandoned(path, &name);
             let draft = path.with_file_name(format!(".{name}.{}.tmp", process::id()));
             let file = File::create_new(&draft)?;
-            // Held for as long as the file is open: what nobody holds is abandoned. Some network's file systems know no
-            // locks; drafts stay there.
+            // The lock is held while the file is open: a draft without one is abandoned. Some network file systems have
+            // no locks; abandoned drafts remain there.
             let _ = file.try_lock();
             let head = serde_json::to_string(head)?;
             let open = match format {
@@ -108,7 +108,7 @@ impl Writer {
         Ok(Self { path: path.to_owned(), draft, rows: 0, open: Some(open) })
     }
 
-    /// Writes a row, a value a column.
+    /// Writes a row, one value per column.
     ///
     /// # Errors
     /// [`Error::Write`].
@@ -123,7 +123,7 @@ impl Writer {
         written.map_err(Error::write(&self.path))
     }
 
-    /// Ends the file with what is known by now, and puts it into its place.
+    /// Completes the file with its tail and renames it to its place.
     ///
     /// # Errors
     /// [`Error::Write`].
@@ -147,7 +147,7 @@ impl Writer {
 impl Drop for Writer {
     fn drop(&mut self) {
         if self.open.take().is_some() {
-            // Half a file serves nobody; if it cannot be removed it is in nobody's way.
+            // Half a file is of no use; if it cannot be removed, it does no harm.
             let _ = fs::remove_file(&self.draft);
         }
     }
@@ -170,28 +170,28 @@ fn remove_abandoned(path: &Path, name: &str) {
     }
 }
 
-/// What is known of rows once they are there.
+/// What is known of rows once they are complete.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, serde::Deserialize)]
 pub struct Tail {
-    /// How many.
+    /// The number of rows.
     pub rows: u64,
-    /// Files that were read.
+    /// The files that were read.
     #[serde(default)]
     pub inputs: Vec<crate::Input>,
-    /// What a user should know.
+    /// Warnings for the user.
     #[serde(default)]
     pub warnings: Vec<String>,
 }
 
-/// A file of rows.
+/// The reader of a file of rows.
 #[derive(Debug)]
 pub struct Reader {
     path: PathBuf,
-    /// Where its rows come from.
+    /// The head: where the rows come from.
     pub head: Json,
-    /// What is known of all of them.
+    /// The tail: what is known of all rows.
     pub tail: Tail,
-    /// Names of its columns.
+    /// The names of the columns.
     pub columns: Vec<String>,
     open: Source,
 }
@@ -203,7 +203,7 @@ enum Source {
     Parquet(Box<parquet_file::Reader>),
 }
 
-/// What both kinds of files tell before their rows.
+/// What is read from either kind of file before its rows.
 struct Told {
     head: String,
     tail: String,
@@ -214,7 +214,7 @@ impl Reader {
     /// Opens a file.
     ///
     /// # Errors
-    /// [`Error::Read`]; [`Error::File`] if it is not one that a [`Writer`] wrote.
+    /// [`Error::Read`]; [`Error::File`] if the file was not written by a [`Writer`].
     pub fn open(path: &Path) -> Result<Self, Error> {
         let (told, open) = match Format::of(path)? {
             Format::Csv => {
@@ -238,7 +238,7 @@ impl Reader {
     /// Reads the next row; false if there is none.
     ///
     /// # Errors
-    /// [`Error::Line`] and [`Error::File`] for what is no row of the file's columns.
+    /// [`Error::Line`] and [`Error::File`] for what is not a row of the file's columns.
     pub fn read(&mut self, row: &mut Vec<Value>) -> Result<bool, Error> {
         row.clear();
         match &mut self.open {

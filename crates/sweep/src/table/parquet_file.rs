@@ -1,4 +1,4 @@
-//! Rows as Parquet, without Arrow: a column of optional numbers or texts is all that there is.
+//! Rows as Parquet, without Arrow: every column is one of optional numbers or texts.
 
 use std::fmt;
 use std::fs::File;
@@ -21,10 +21,10 @@ use parquet::schema::types::{Type, TypePtr};
 use super::Told;
 use crate::{Column, Error, Kind, Value};
 
-/// Where head and tail stand among the file's metadata.
+/// The keys of the head and the tail in the file's metadata.
 const HEAD: &str = "kestirim";
 const TAIL: &str = "kestirim.end";
-/// Rows that are kept until they are written together.
+/// The number of rows that are kept in memory until they are written together.
 const GROUP: usize = 65_536;
 
 pub(super) struct Writer {

@@ -1,18 +1,18 @@
-//! From continuous to discrete time, without what is zero.
+//! Discretisation of the augmented model that skips the zeros of its matrices.
 //!
-//! The exact step of `kestirim-observer-design` computes with 106 bits and dense matrices. Where intervals jitter a step is
-//! computed a sample, and a filter that rounds every product needs no more than the last digits of a double.
+//! The exact step of `kestirim-observer-design` computes with 106 bits and dense matrices. With jittering intervals,
+//! a step is computed per sample, and a filter that rounds every product does not need the last digits of a double.
 
 use kestirim_scalar::Columns;
 use nalgebra::SMatrix;
 
-/// Terms of the series that matter where the noise has ‖A h‖ ≤ 1.
+/// Number of terms of the series that matter for the noise, where ‖A h‖ is at most 1.
 const TERMS: u32 = 20;
-/// Halvings of the interval: 2⁶⁴ of them leave nothing finite.
+/// Largest number of halvings of the interval: an interval of 2⁶⁴ parts leaves nothing finite.
 const MOST_HALVINGS: u32 = 64;
 
-/// Flow of ẋ = A x + w, where the first K states move the first four and the others only themselves: the transition, its
-/// integral, and the covariance of the noise.
+/// The flow of ẋ = A x + w, where the first K states drive the first four and all others only themselves: the
+/// transition, its integral, and the covariance of the noise.
 pub(super) struct Flow<const N: usize, const K: usize> {
     pub(super) transition: SMatrix<f64, N, N>,
     pub(super) integral: SMatrix<f64, N, N>,
@@ -20,7 +20,7 @@ pub(super) struct Flow<const N: usize, const K: usize> {
 }
 
 impl<const N: usize, const K: usize> Flow<N, K> {
-    /// Over `interval` seconds, which are above zero; none if nothing finite is left.
+    /// The flow over a positive `interval` (s); `None` if the result is not finite.
     pub(super) fn new(
         a: &SMatrix<f64, N, N>,
         density: &SMatrix<f64, N, N>,
@@ -53,7 +53,7 @@ impl<const N: usize, const K: usize> Flow<N, K> {
     }
 
     fn short(a: &SMatrix<f64, N, N>, density: &SMatrix<f64, N, N>, interval: f64) -> Self {
-        // h^k A^(k−1) / k!, and h^k/k! of the k-th derivative of the noise: P ← A P + P Aᵀ.
+        // h^k A^(k−1) / k!, and h^k/k! times the k-th derivative of the noise covariance, by P ← A P + P Aᵀ.
         let mut term = SMatrix::<f64, N, N>::identity() * interval;
         let mut noise_term = density * interval;
         let (mut integral, mut noise) = (term, noise_term);
@@ -70,7 +70,7 @@ impl<const N: usize, const K: usize> Flow<N, K> {
     }
 }
 
-/// A X of an A that has nothing but its diagonal beyond the first four rows and K columns.
+/// The product A X, for an A that beyond its first four rows and K columns has only a diagonal.
 fn times<const N: usize, const K: usize>(
     a: &SMatrix<f64, N, N>,
     x: &SMatrix<f64, N, N>,

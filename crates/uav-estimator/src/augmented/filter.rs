@@ -9,14 +9,15 @@ use super::{AugmentedModel, AugmentedStep};
 use crate::Error;
 use crate::kalman_filter::{Forced, UNITS, power_of_two};
 
-/// Fixed point holds a variance of so many units squared as well as what is left of it.
+/// Number of units per initial standard deviation of an added state, chosen so that fixed point holds the variance
+/// and what remains of it.
 const UNITS_A_SIGMA: f64 = 8.0;
-/// In fixed point a state beside the four whose variance is so many times that at the start …
+/// In fixed point, a state beyond the first four is faded when its variance exceeds the initial one by this factor.
 const MOST_VARIANCE: f64 = 4.0;
-/// … has so much left after a step.
+/// Share of such a state that remains after a step.
 const FADING: f64 = 0.98;
 
-/// A step of an [`AugmentedModel`] in the scalar and the units of an [`AugmentedFilter`].
+/// An [`AugmentedStep`] in the scalar and the units of an [`AugmentedFilter`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -34,11 +35,11 @@ pub struct AugmentedTransition<T: Scalar, const N: usize, const K: usize> {
     pub(super) noise: Covariance<T, N>,
 }
 
-/// A Kalman filter of the N states of an [`AugmentedModel`], with P outputs of which each may be missing.
+/// A Kalman filter for the N states of an [`AugmentedModel`], with P outputs, any of which may be missing.
 ///
-/// What goes in and comes out is in the scalar T and in the filter's units, powers of two of those of the SI
+/// Inputs and results are in the scalar T and in the filter's units, powers of two of the SI units
 /// ([`AugmentedFilter::state_units`], [`AugmentedFilter::output_units`]), so that firmware needs no double precision.
-/// Outputs are taken in one after the other, so their noise must be independent.
+/// Outputs are processed one after the other, so their noise must be independent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -55,15 +56,15 @@ pub struct AugmentedFilter<T: Scalar, const N: usize, const K: usize, const P: u
     pub(super) rows: [Row<T, N>; P],
     pub(super) state_units: SVector<f64, N>,
     pub(super) output_units: SVector<f64, P>,
-    /// Variances of the states at the start.
+    /// Initial variances of the states.
     start: SVector<T, N>,
 }
 
 impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<T, N, K, P> {
-    /// A filter that starts at zero, with the standard deviations of the model.
+    /// Creates a filter that starts at zero, with the initial standard deviations of the model.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] if a number is beyond what the scalar holds.
+    /// [`Error::NotFinite`] if a number is out of range for the scalar.
     pub fn new(model: &AugmentedModel<N, K, P>) -> Result<Self, Error> {
         let known = model.start.as_array();
         let state_units: [f64; N] = from_fn(|state| match UNITS.get(state) {
@@ -92,13 +93,13 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         Ok(Self { state, rows, state_units, output_units, start: SVector::from(start) })
     }
 
-    /// The filter as it was at its start.
+    /// A copy of the filter, reset to its initial state.
     pub fn begun_anew(&self) -> Self {
         let covariance = Covariance::from_variances(self.start.as_array());
         Self { state: Gaussian::new(SVector::zeros(), covariance), ..*self }
     }
 
-    /// The same step, converted once.
+    /// Converts a step to the filter's scalar and units.
     pub fn transition(&self, step: &AugmentedStep<N>) -> AugmentedTransition<T, N, K> {
         let units = self.state_units.as_array();
         let a = step.transition.a.as_columns();
@@ -132,12 +133,12 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         }
     }
 
-    /// Units of the states: what is 1 in the filter is so many rad, rad/s, m/s, rad, …
+    /// Units of the states: a value of 1 in the filter corresponds to this many rad, rad/s, m/s, rad, …
     pub const fn state_units(&self) -> &SVector<f64, N> {
         &self.state_units
     }
 
-    /// Units of the outputs, the same.
+    /// Units of the outputs: a value of 1 in the filter corresponds to this many of the output's own unit.
     pub const fn output_units(&self) -> &SVector<f64, P> {
         &self.output_units
     }
@@ -147,29 +148,30 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         &self.state
     }
 
-    /// Whether inputs, or a square of the airspeed, show in an output at once.
+    /// Whether an output depends directly on the inputs, or on the square of the airspeed.
     pub(super) fn is_direct(&self, output: usize) -> bool {
         self.rows.get(output).is_some_and(|row| {
             row.pressure.is_some() || row.direct.iter().any(|part| *part != T::ZERO)
         })
     }
 
-    /// x̂: deviations α (rad), q (rad/s), V (m/s), θ (rad), and what the model adds, in units of the SI.
+    /// The estimate x̂: deviations of α (rad), q (rad/s), V (m/s), θ (rad), and the states that the model adds, in SI
+    /// units.
     pub fn estimate(&self) -> SVector<f64, N> {
         self.state.mean.map(T::to_f64).component_mul(&self.state_units)
     }
 
-    /// Standard deviations of the estimate's errors, in the same units.
+    /// Standard deviations of the estimation errors, in the units of [`AugmentedFilter::estimate`].
     pub fn sigma(&self) -> SVector<f64, N> {
         let variances = self.state.covariance.variances();
         let sigmas = variances.map(|variance| libm::sqrt(variance.to_f64().max(0.0)));
         sigmas.component_mul(&self.state_units)
     }
 
-    /// Moves on by a step with these inputs δe (rad) and δt.
+    /// Predicts over a step with these inputs δe (rad) and δt.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is as it was.
+    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is unchanged.
     pub fn predict(
         &mut self,
         transition: &AugmentedTransition<T, N, K>,
@@ -180,11 +182,12 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         Ok(())
     }
 
-    /// Moves on by a step with the inputs that were held during it, then takes in the outputs that were measured with
-    /// those of now: [`AugmentedFilter::predict`] and [`AugmentedFilter::correct`] in one, with one copy of the estimate less.
+    /// Predicts over a step with the inputs held during it, then processes the outputs measured with the present
+    /// inputs: [`AugmentedFilter::predict`] and [`AugmentedFilter::correct`] combined, with one copy of the estimate
+    /// less.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is as it was before both.
+    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is unchanged, including by the prediction.
     pub fn step(
         &mut self,
         transition: &AugmentedTransition<T, N, K>,
@@ -200,14 +203,16 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         Ok(innovations)
     }
 
-    /// What is left of each state after a step; less of one whose variance hardly fits the scalar.
+    /// The share of each state that remains after a step, reduced for states whose variance approaches the range of
+    /// the scalar.
     ///
-    /// In fixed point the roundings of every step add to a state that no output measures, such as a head wind without a speed
-    /// over ground. Its variance would overflow, and then every sample would be refused. Floats have room.
+    /// In fixed point the rounding of every step accumulates in a state that no output measures, such as a head wind
+    /// without a ground speed. Its variance would overflow, and then every sample would be refused. Floating point
+    /// has enough range.
     #[inline(always)]
     pub(super) fn bounded(&self, transition: &AugmentedTransition<T, N, K>) -> SVector<T, N> {
         let mut bounded = transition.fading;
-        // Sums in floats have no headroom to count.
+        // Floating-point sums need no headroom.
         if T::headroom(0) == Some(0) {
             return bounded;
         }
@@ -222,11 +227,11 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         bounded
     }
 
-    /// Takes in the outputs that were measured while these inputs were applied, and answers with what each said beyond
-    /// what was expected of it, in the outputs' units.
+    /// Processes the outputs measured while these inputs were applied, and returns their innovations, in the outputs'
+    /// units.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is as it was.
+    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is unchanged.
     pub fn correct(
         &mut self,
         measured: &[Option<T>; P],
@@ -235,7 +240,7 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         self.correct_with(measured, input, always)
     }
 
-    /// The same, where `correct` decides whether a weighed output is taken in.
+    /// Processes the outputs as [`AugmentedFilter::correct`] does, where `correct` decides whether an output is used.
     pub(super) fn correct_with(
         &mut self,
         measured: &[Option<T>; P],
@@ -248,7 +253,7 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
         Ok(innovations)
     }
 
-    /// What the outputs say, taken into an estimate; of one that is refused nothing is to be used.
+    /// Applies the outputs to an estimate, which must be discarded after an error.
     #[inline(always)]
     fn taken(
         &self,
@@ -274,7 +279,7 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
 }
 
 impl<T: Scalar, const N: usize, const K: usize> AugmentedTransition<T, N, K> {
-    /// Moves on to another step over the same interval by a share of the way, 0 to 1.
+    /// Interpolates towards another step over the same interval; `share` is from 0 to 1.
     #[inline(always)]
     pub(super) fn blend(&mut self, other: &Self, share: T) {
         let (rows, others) = (self.rows.as_columns_mut(), other.rows.as_columns());
@@ -285,7 +290,7 @@ impl<T: Scalar, const N: usize, const K: usize> AugmentedTransition<T, N, K> {
         self.noise.blend(&other.noise, share);
     }
 
-    /// The step with these inputs, after which so much is left of each state.
+    /// The step with these inputs, after which the share `fading` of each state remains.
     #[inline(always)]
     pub(super) fn forced<'a>(
         &'a self,
@@ -297,7 +302,7 @@ impl<T: Scalar, const N: usize, const K: usize> AugmentedTransition<T, N, K> {
     }
 }
 
-/// Every weighed output is taken in.
+/// Uses every output.
 #[inline(always)]
 fn always<T: Scalar, const N: usize>(
     next: &mut Gaussian<T, N>,

@@ -9,9 +9,9 @@ use crate::transitions::{Moves, Transitions, interval_us, is_set_back};
 use crate::watch::Watch;
 use crate::{Error, Sample};
 
-/// An [`AugmentedFilter`] along a flight: samples of any times, with gaps between them and outputs that are missing.
+/// An [`AugmentedFilter`] along a flight: samples at any times, with gaps and missing outputs.
 ///
-/// Gaps, gates, the clock and L are those of a [`FlightFilter`](crate::FlightFilter).
+/// Gaps, gates, the clock and L are handled as in a [`FlightFilter`](crate::FlightFilter).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -25,15 +25,15 @@ pub struct AugmentedFlight<
     filter: AugmentedFilter<T, N, K, P>,
     watch: Watch<P>,
     transitions: Transitions<AugmentedModel<N, K, P>, AugmentedTransition<T, N, K>, L>,
-    /// Time (µs) and input of the sample before.
+    /// Time (µs) and input of the previous sample.
     before: Option<(i64, SVector<f64, 2>)>,
 }
 
 impl<T: Scalar, const N: usize, const K: usize, const P: usize, const L: usize>
     AugmentedFlight<T, N, K, P, L>
 {
-    /// A filter of this model, measured every `usual` seconds; white noise of these standard deviations a usual interval
-    /// reaches the inputs δe (rad) and δt.
+    /// Creates a filter of this model for samples every `usual` seconds; `inputs` are the standard deviations, per
+    /// usual interval, of the white noise on the inputs δe (rad) and δt.
     ///
     /// # Errors
     /// [`Error::NotFinite`].
@@ -47,7 +47,7 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize, const L: usize>
         Ok(Self { filter, watch: Watch::NEW, transitions, before: None })
     }
 
-    /// Says how long an interval usually is, s.
+    /// Sets the usual interval, s.
     pub fn set_usual(&mut self, usual: f64) {
         self.transitions.set_usual(usual);
     }
@@ -57,53 +57,53 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize, const L: usize>
         &self.filter
     }
 
-    /// How many times each output was left out, because it contradicted the estimate.
+    /// Number of rejections of each output, for contradicting the estimate.
     pub const fn rejected(&self) -> &[u32; P] {
         &self.watch.rejected
     }
 
-    /// Whether the estimate can be relied upon: see [`FlightFilter::health`](crate::FlightFilter::health).
+    /// Whether the estimate is reliable: see [`FlightFilter::health`](crate::FlightFilter::health).
     pub fn health(&self) -> Health {
         self.watch.health()
     }
 
-    /// Takes in a sample, and answers with what each of its outputs said beyond what was expected of it. One that is
-    /// more than a second older than the one before is not late: the clock was set back, and the filter begins anew.
+    /// Processes a sample, and returns the innovations of its outputs. If it is more than a second older than the
+    /// previous one, the clock was set back, and the filter restarts.
     ///
     /// # Errors
-    /// [`Error::OutOfOrder`], [`Error::Gap`], [`Error::NotFinite`], [`Error::Design`] or [`Error::Estimate`]; the filter
-    /// is as it was.
+    /// [`Error::OutOfOrder`], [`Error::Gap`], [`Error::NotFinite`], [`Error::Design`] or [`Error::Estimate`]; the
+    /// filter is unchanged.
     pub fn take(&mut self, sample: &Sample<P>) -> Result<[Option<Innovation<f64>>; P], Error> {
         taken(&mut self.filter, &mut self.watch, &mut self.transitions, &mut self.before, sample)
     }
 }
 
-/// What a flight asks of its filter.
+/// A filter that can be run along a flight.
 pub(super) trait Flown<T: Scalar, const N: usize, const K: usize, const P: usize>:
     Copy
 {
-    /// What its model does in an interval, …
+    /// The model's step over an interval.
     type Step;
-    /// … and the same in its scalar and units.
+    /// The step in the filter's scalar and units.
     type Transition: Copy;
 
-    /// Estimate and units.
+    /// The underlying filter, with its estimate and units.
     fn filter(&self) -> &AugmentedFilter<T, N, K, P>;
 
-    /// The filter as it was at its start.
+    /// A copy of the filter, reset to its initial state.
     fn begun_anew(&self) -> Self;
 
     /// Converts a step.
     fn transition(&self, step: &Self::Step) -> Self::Transition;
 
-    /// Moves on by a step.
+    /// Predicts over a step.
     fn predict(
         &mut self,
         transition: &Self::Transition,
         input: &SVector<T, 2>,
     ) -> Result<(), Error>;
 
-    /// The filter that takes in these outputs, once what it does not see is taken from them.
+    /// The filter that processes these outputs, after subtracting the parts that it does not model.
     fn prepared(
         &mut self,
         measured: &mut [Option<T>; P],
@@ -141,7 +141,7 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> Flown<T, N, K, P
     }
 }
 
-/// Takes a sample into a filter of a flight; whatever is refused changes nothing.
+/// Processes a sample of a flight; after an error nothing is changed.
 pub(super) fn taken<T, F, D, const N: usize, const K: usize, const P: usize, const L: usize>(
     filter: &mut F,
     watch: &mut Watch<P>,
@@ -170,7 +170,7 @@ where
     }
     let mut watched = *watch;
     let judged = judged(&mut next, sample, &mut watched)?;
-    // Of what inputs show at once, a gain that is a little wrong looks as if it were late.
+    // For outputs with direct dependence on the inputs, a slightly wrong gain looks like lateness.
     let mut timed = sample.measured;
     for (output, measured) in timed.iter_mut().enumerate() {
         *measured = measured.filter(|_| !next.filter().is_direct(output));
@@ -185,7 +185,7 @@ where
     Ok(judged.innovations)
 }
 
-/// Takes in what the gates admit.
+/// Processes the measurements that the gates admit.
 fn judged<T, F, const N: usize, const K: usize, const P: usize>(
     filter: &mut F,
     sample: &Sample<P>,
@@ -205,7 +205,7 @@ where
     let gates = &mut watch.gates;
     let filter = filter.prepared(&mut measured)?;
     let reported = filter.correct_with(&measured, &input, |next, weighed, output| {
-        // Without an index, which would keep a check of its bounds.
+        // No index is used: it would require a bounds check.
         if let Some((gate, is_left_out)) = gates.get_mut(output).zip(is_left_out.get_mut(output)) {
             *is_left_out = !gate.admits(weighed.exceeds(T::from_f64(GATE)));
             if *is_left_out {

@@ -1,4 +1,4 @@
-//! The models of a grid, and what is blended of them.
+//! The local models of a grid, and their interpolation.
 
 use core::array::from_fn;
 
@@ -12,7 +12,7 @@ use super::{AugmentedFilter, AugmentedStep, LocalModel};
 use crate::Error;
 use crate::kalman_filter::UNITS;
 
-/// Steps of all local models in the scalar and the units of a [`ScheduledFilter`](crate::ScheduledFilter).
+/// The steps of all local models, in the scalar and the units of a [`ScheduledFilter`](crate::ScheduledFilter).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -72,7 +72,8 @@ pub(super) struct Grid<T: Scalar, const N: usize, const P: usize, const G: usize
 }
 
 impl<T: Scalar, const N: usize, const P: usize, const G: usize> Grid<T, N, P, G> {
-    /// Of these models, for a filter of the first of them, whose outputs get units for all.
+    /// Creates the grid of these models, for a filter of the first one, whose output units are set to suit all of
+    /// them.
     pub(super) fn new<const K: usize>(
         models: &[LocalModel<N, K, P>; G],
         filter: &mut AugmentedFilter<T, N, K, P>,
@@ -103,7 +104,7 @@ impl<T: Scalar, const N: usize, const P: usize, const G: usize> Grid<T, N, P, G>
         Ok(grid)
     }
 
-    /// Steps of all models, as this filter takes them.
+    /// Converts the steps of all models for this filter.
     pub(super) fn transition<const K: usize>(
         &self,
         filter: &AugmentedFilter<T, N, K, P>,
@@ -118,13 +119,13 @@ impl<T: Scalar, const N: usize, const P: usize, const G: usize> Grid<T, N, P, G>
         ScheduledTransition { steps: converted }
     }
 
-    /// The model below an airspeed, and how near it is to the next one: 0 to 1.
+    /// Index of the model below an airspeed, and the relative distance to the next one: 0 to 1.
     fn place(&self, airspeed: T) -> (usize, T) {
         let (mut place, mut share) = (0, T::ZERO);
         let pairs = self.local.iter().zip(self.local.iter().skip(1)).enumerate();
         for (index, (local, next)) in pairs {
             if index == 0 || airspeed >= local.airspeed {
-                // Within both, so that fixed point holds the product.
+                // Limited to the interval, so that fixed point holds the product.
                 let beyond = airspeed.clamp(local.airspeed, next.airspeed) - local.airspeed;
                 place = index;
                 share = (beyond * local.slope).clamp(T::ZERO, T::ONE);
@@ -133,7 +134,7 @@ impl<T: Scalar, const N: usize, const P: usize, const G: usize> Grid<T, N, P, G>
         (place, share)
     }
 
-    /// Moves a filter on, by the step of the airspeed that it estimates.
+    /// Predicts with the step at the filter's estimated airspeed.
     pub(super) fn predict<const K: usize>(
         &self,
         filter: &mut AugmentedFilter<T, N, K, P>,
@@ -152,7 +153,8 @@ impl<T: Scalar, const N: usize, const P: usize, const G: usize> Grid<T, N, P, G>
         Ok(())
     }
 
-    /// Gives a filter the outputs of the airspeed that it estimates, and takes from what was measured what these do not see.
+    /// Sets the filter's output rows to those at its estimated airspeed, and subtracts from the measurements what
+    /// these do not model.
     pub(super) fn prepare<const K: usize>(
         &self,
         filter: &mut AugmentedFilter<T, N, K, P>,
@@ -173,13 +175,13 @@ impl<T: Scalar, const N: usize, const P: usize, const G: usize> Grid<T, N, P, G>
     }
 }
 
-/// A place of a list and the next; at the end the same.
+/// An element of a list and the next one; at the end, the same one twice.
 fn about<X, const G: usize>(all: &[X; G], place: usize) -> Result<(&X, &X), Error> {
     let below = all.get(place).ok_or(Error::Grid)?;
     Ok((below, all.get(place.wrapping_add(1)).unwrap_or(below)))
 }
 
-/// A process after which a constant is added to the four states.
+/// A process followed by the addition of a constant to the four states.
 struct Shifted<'a, T, Q> {
     process: Q,
     constant: &'a SVector<T, 4>,
@@ -197,7 +199,7 @@ impl<T: Scalar, const N: usize, Q: Process<T, N>> Process<T, N> for Shifted<'_, 
     }
 }
 
-/// One model of a grid, in the scalar and the units of its filter.
+/// A model of a grid, in the scalar and the units of its filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -209,13 +211,13 @@ impl<T: Scalar, const N: usize, Q: Process<T, N>> Process<T, N> for Shifted<'_, 
     ))
 )]
 pub(super) struct Local<T: Scalar, const N: usize, const P: usize> {
-    /// Airspeed, less that of the origin, …
+    /// Airspeed relative to that of the origin.
     pub(super) airspeed: T,
-    /// … and the inverse of how far it is to the next model; zero if it is there.
+    /// Inverse of the airspeed difference to the next model; zero if there is none.
     pub(super) slope: T,
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     pub(super) rows: [Row<T, N>; P],
-    /// What is taken from each output that is measured.
+    /// Constant that is subtracted from each measured output.
     pub(super) taken: SVector<T, P>,
     /// The steady flight: states in their units, and inputs.
     pub(super) state: SVector<f64, 4>,
@@ -234,7 +236,7 @@ impl<T: Scalar, const N: usize, const P: usize> Local<T, N, P> {
         }
     }
 
-    /// Of a model, with the next one so far apart (m/s).
+    /// Converts a model; `apart` is the airspeed difference to the next one (m/s).
     fn of<const K: usize>(
         local: &LocalModel<N, K, P>,
         state_units: &[f64; N],
@@ -273,12 +275,12 @@ impl<T: Scalar, const N: usize, const P: usize> Local<T, N, P> {
             && self.rows.iter().all(Row::is_finite)
     }
 
-    /// What a step adds to the four states beside A x + B u, so that the steady flight stays as it is.
+    /// The constant that a step adds to the four states beside A x + B u, so that the steady flight is stationary.
     pub(super) fn constant<const K: usize>(
         &self,
         step: &AugmentedTransition<T, N, K>,
     ) -> SVector<T, 4> {
-        // Of what the scalar made of A and B: what they were before would leave their roundings.
+        // Computed from A and B as rounded to the scalar: with the exact ones their rounding errors would remain.
         let mut constant = *self.state.as_array();
         let states = step.rows.column_iter().zip(&self.state);
         let inputs = step.b.column_iter().zip(&self.input);

@@ -6,22 +6,24 @@ use super::{AugmentedModel, Output, Reference};
 use crate::Error;
 use crate::transitions::Moves;
 
-/// A model near one steady flight, among several of one aircraft that [`ScheduledFilter`](crate::ScheduledFilter) blends.
+/// A model near one steady flight, one of several of an aircraft that [`ScheduledFilter`](crate::ScheduledFilter)
+/// interpolates.
 ///
-/// The steady flight is told by its deviations from a common origin, from which samples and estimates deviate, too: the
-/// trim of one of the models, which then has zeros here. The model itself is that of deviations from its own steady flight.
+/// The steady flight is given by its deviations from a common origin, to which samples and estimates are relative,
+/// too: the trim of one of the models, which then has zeros here. The model itself describes deviations from its own
+/// steady flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LocalModel<const N: usize, const K: usize, const P: usize> {
-    /// How the aircraft deviates from this steady flight, with noise and gusts of its airspeed. Biases, wind, forces are those of
-    /// all models, in the same order and of the same size.
+    /// Deviations of the aircraft from this steady flight, with noise and gusts for its airspeed. Biases, wind and
+    /// forces must be those of all models, in the same order and of the same size.
     pub model: AugmentedModel<N, K, P>,
-    /// α (rad), q (rad/s), V (m/s), θ (rad) of this steady flight, less those of the origin.
+    /// State α (rad), q (rad/s), V (m/s), θ (rad) of this steady flight, minus that of the origin.
     pub state: SVector<f64, 4>,
-    /// δe (rad) and δt of the same.
+    /// Inputs δe (rad) and δt of this steady flight, minus those of the origin.
     pub input: SVector<f64, 2>,
-    /// What each output shows in it, less what it shows at the origin.
+    /// Value of each output in this steady flight, minus that at the origin.
     pub outputs: SVector<f64, P>,
 }
 
@@ -31,7 +33,7 @@ impl<const N: usize, const K: usize, const P: usize> LocalModel<N, K, P> {
         numbers.copied().all(f64::is_finite)
     }
 
-    /// Whether both are models of the same states, outputs and origin.
+    /// Whether both are models with the same states, outputs and origin.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         let outputs = self.model.outputs.iter().zip(&other.model.outputs);
         let mut alike = outputs.map(|(one, another)| match (one.reference, another.reference) {
@@ -47,15 +49,15 @@ impl<const N: usize, const K: usize, const P: usize> LocalModel<N, K, P> {
         self.model.has_states_of(&other.model) && alike.all(|alike| alike)
     }
 
-    /// Airspeed of the origin.
+    /// Airspeed of the origin, m/s.
     fn origin(&self, airspeed: f64) -> f64 {
         airspeed - self.state.as_array()[AIRSPEED]
     }
 
-    /// An output as deviations from the origin show it, and what has to be taken from it for that.
+    /// An output in terms of deviations from the origin, and the constant to be subtracted from its measurements.
     ///
-    /// What is in proportion to the dynamic pressure is in proportion to that of the origin, too: with V₀ the origin's airspeed and
-    /// V₁ that of this flight, (V/V₁)² = (V/V₀)² (V₀/V₁)².
+    /// An output proportional to the dynamic pressure is proportional to that of the origin, too: with the airspeeds
+    /// V₀ of the origin and V₁ of this flight, (V/V₁)² = (V/V₀)² (V₀/V₁)².
     pub(super) fn seen(&self, output: &Output, shown: f64) -> (Output, f64) {
         let at = |output: &Output| -> f64 {
             let states = output.row.iter().zip(&self.state).map(|(part, it)| part * it);
@@ -80,10 +82,10 @@ impl<const N: usize, const K: usize, const P: usize> LocalModel<N, K, P> {
     }
 }
 
-/// Airspeeds that differ by no more than this part are the same.
+/// Relative difference below which airspeeds count as equal.
 const SAME: f64 = 1e-9;
 
-/// Local models, to be moved on together.
+/// Local models that are discretised together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -106,7 +108,7 @@ impl<const N: usize, const K: usize, const P: usize, const G: usize> Moves for M
         let mut steps = [step; G];
         let mut before = first;
         for (place, model) in steps.iter_mut().zip(&self.models) {
-            // One that is there twice fills a place.
+            // A repeated model is discretised once.
             if model != before {
                 step = model.over(interval, sample, noise)?;
             }

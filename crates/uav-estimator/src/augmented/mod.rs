@@ -1,4 +1,4 @@
-//! A filter of more than the four states: what gusts, wind, biases and a wrong trim add to them.
+//! A filter with more than the four states, for gusts, wind, biases and a wrong trim.
 
 mod discretise;
 mod filter;

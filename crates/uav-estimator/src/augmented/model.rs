@@ -9,41 +9,43 @@ use crate::Error;
 use crate::flight_filter::UNKNOWN;
 use crate::transitions::Moves;
 
-/// α, q and V among the states.
+/// Indices of α, q and V among the states.
 const ALPHA: usize = 0;
 const RATE: usize = 1;
 const AIRSPEED: usize = 2;
 
-/// Something constant that is not known, or slowly walks.
+/// An unknown constant, or a slow random walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Drift {
-    /// Standard deviation at the start, in its unit.
+    /// Initial standard deviation, in the quantity's unit.
     pub sigma: f64,
-    /// Standard deviation by which it walks within a second, in its unit per √s.
+    /// Random-walk rate: the standard deviation after one second, in the quantity's unit per √s.
     pub rate: f64,
 }
 
-/// Gusts, as first-order processes carried past by the airspeed: Dryden's along the wing's path (MIL-F-8785C), and the
-/// same across it.
+/// Gusts as first-order processes carried past at the airspeed: Dryden's along the path (MIL-F-8785C), and one of the
+/// same form across it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gust {
-    /// Standard deviations along (u) and across (w), m/s.
+    /// Standard deviations along (u) and across (w) the path, m/s.
     pub sigmas: [f64; 2],
-    /// Lengths of the same, m.
+    /// Length scales along and across the path, m.
     pub lengths: [f64; 2],
-    /// V₀, the airspeed of the steady flight, m/s.
+    /// Airspeed V₀ of the steady flight, m/s.
     pub airspeed: f64,
 }
 
-/// A linear model of an aircraft with what acts on it and on its sensors: N states, the first four of them α, q, V and
-/// θ as deviations, the first K of them those that move the four, and P outputs.
+/// A linear model of an aircraft with disturbances and sensor errors.
 ///
-/// α and V are those of the air about the aircraft, gusts included. Gusts take two of the K − 4 states, an unknown force one;
-/// a bias takes one of the N − K others, the wind and the density one each. What is not taken stays at zero.
+/// It has P outputs and N states: the first four are the deviations of α, q, V and θ, and the first K are those that
+/// drive these four.
+///
+/// α and V are relative to the surrounding air, gusts included. Gusts take two of the K − 4 states, an unknown force
+/// one; each bias takes one of the N − K others, as do the wind and the density. Unused states remain zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -52,17 +54,17 @@ pub struct AugmentedModel<const N: usize, const K: usize, const P: usize> {
     b: SMatrix<f64, N, 2>,
     /// Spectral density of the white noise on ẋ, in units²·s.
     density: SMatrix<f64, N, N>,
-    /// Standard deviations of the states at the start.
+    /// Initial standard deviations of the states.
     pub(super) start: SVector<f64, N>,
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     pub(super) outputs: [Output; P],
-    /// Rows of C.
+    /// Output matrix C.
     pub(super) c: SMatrix<f64, P, N>,
-    /// How many of the first K states are taken, and of the others.
+    /// End of the used states among the first K, and among the others.
     taken: [u8; 2],
 }
 
-/// x⁺ = A x + B u + w of all states.
+/// A step of all states: x⁺ = A x + B u + w.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -74,8 +76,8 @@ pub struct AugmentedStep<const N: usize> {
 }
 
 impl<const N: usize, const K: usize, const P: usize> AugmentedModel<N, K, P> {
-    /// ẋ = A x + B u + w with these outputs; `density` is that of the white noise w (units²·s of ẋ). Nothing is known of
-    /// the four states at the start: 0.2 rad, 0.5 rad/s, 20 m/s, 0.5 rad.
+    /// Creates the model ẋ = A x + B u + w with these outputs; `density` is the spectral density of the white noise w
+    /// (units²·s of ẋ). The four states are initially unknown: 0.2 rad, 0.5 rad/s, 20 m/s, 0.5 rad.
     ///
     /// # Errors
     /// [`Error::NotFinite`].
@@ -120,10 +122,10 @@ impl<const N: usize, const K: usize, const P: usize> AugmentedModel<N, K, P> {
         Ok(Self { a, b, density: q, start, outputs: *outputs, c, taken: [4, K as u8] })
     }
 
-    /// With a bias of one of the outputs, in its unit.
+    /// Adds a bias of one of the outputs, in its unit.
     ///
     /// # Errors
-    /// [`Error::NoRoom`] if all of the last N − K states are taken, or there is no such output; [`Error::NotFinite`].
+    /// [`Error::NoRoom`] if all of the last N − K states are used, or there is no such output; [`Error::NotFinite`].
     pub fn with_bias(mut self, output: usize, drift: &Drift) -> Result<Self, Error> {
         let state = self.place(1, output < P)?;
         self.drifting(state, drift)?;
@@ -133,10 +135,10 @@ impl<const N: usize, const K: usize, const P: usize> AugmentedModel<N, K, P> {
         Ok(self)
     }
 
-    /// With a head wind, which what refers to the ground does not feel: m/s.
+    /// Adds a head wind (m/s), which is subtracted from outputs relative to the ground.
     ///
     /// # Errors
-    /// [`Error::NoRoom`] if all of the last N − K states are taken; [`Error::NotFinite`].
+    /// [`Error::NoRoom`] if all of the last N − K states are used; [`Error::NotFinite`].
     pub fn with_wind(mut self, drift: &Drift) -> Result<Self, Error> {
         let state = self.place(1, true)?;
         self.drifting(state, drift)?;
@@ -144,11 +146,11 @@ impl<const N: usize, const K: usize, const P: usize> AugmentedModel<N, K, P> {
         Ok(self)
     }
 
-    /// With an unknown density of the air, in parts of that of the steady flight: what is in proportion to the dynamic pressure
-    /// is in proportion to it, too.
+    /// Adds an unknown density of the air, relative to that of the steady flight, to which outputs proportional to
+    /// the dynamic pressure are proportional, too.
     ///
     /// # Errors
-    /// [`Error::NoRoom`] if all of the last N − K states are taken; [`Error::NotFinite`].
+    /// [`Error::NoRoom`] if all of the last N − K states are used; [`Error::NotFinite`].
     pub fn with_density(mut self, drift: &Drift) -> Result<Self, Error> {
         let state = self.place(1, true)?;
         self.drifting(state, drift)?;
@@ -162,11 +164,12 @@ impl<const N: usize, const K: usize, const P: usize> AugmentedModel<N, K, P> {
         Ok(self)
     }
 
-    /// With an unknown constant, or slowly walking, part of a state's derivative: a trim that is another than was thought.
-    /// Units: the state's per second.
+    /// Adds an unknown part of a state's derivative, constant or a slow random walk, in the state's unit per second:
+    /// it represents a trim different from the assumed one.
     ///
     /// # Errors
-    /// [`Error::NoRoom`] if all of the first K states are taken, or the state is none of the four; [`Error::NotFinite`].
+    /// [`Error::NoRoom`] if all of the first K states are used, or the state is none of the four;
+    /// [`Error::NotFinite`].
     pub fn with_force(mut self, moved: usize, drift: &Drift) -> Result<Self, Error> {
         let state = self.place(0, moved < 4)?;
         self.drifting(state, drift)?;
@@ -176,13 +179,14 @@ impl<const N: usize, const K: usize, const P: usize> AugmentedModel<N, K, P> {
         Ok(self)
     }
 
-    /// With gusts along and across the path. They act as V and α do, and change what is measured of these. That the tail
-    /// feels a gust across later than the wing, which turns the aircraft, is taken for white noise: the growth of the gust's
-    /// angle, times half the pitch damping.
+    /// Adds gusts along and across the path, which act as V and α do, and change the measurements of these.
+    ///
+    /// The tail feels a gust across the path later than the wing, which turns the aircraft. This is approximated by
+    /// white noise: the derivative of the gust's angle times half the pitch damping.
     ///
     /// # Errors
-    /// [`Error::NoRoom`] if fewer than two of the first K states are free; [`Error::NotFinite`], also of a length or an
-    /// airspeed of zero.
+    /// [`Error::NoRoom`] if fewer than two of the first K states are free; [`Error::NotFinite`], also for a length
+    /// scale or an airspeed of zero.
     pub fn with_gust(mut self, gust: &Gust) -> Result<Self, Error> {
         let felt = [(AIRSPEED, 1.0), (ALPHA, 1.0 / gust.airspeed)];
         for ((sigma, length), (moved, share)) in gust.sigmas.iter().zip(gust.lengths).zip(felt) {
@@ -193,7 +197,7 @@ impl<const N: usize, const K: usize, const P: usize> AugmentedModel<N, K, P> {
             if !(fading >= 0.0 && share.is_finite() && density.is_finite()) {
                 return Err(Error::NotFinite);
             }
-            // What the gust does to the air's α or V, it does with its own derivative: −g/τ and white noise.
+            // A gust changes the air-relative α or V through its own derivative: −g/τ plus white noise.
             for (place, value) in [((state, state), -fading), ((moved, state), -fading * share)] {
                 if let Some(part) = self.a.get_mut(place) {
                     *part += value;
@@ -218,7 +222,7 @@ impl<const N: usize, const K: usize, const P: usize> AugmentedModel<N, K, P> {
         Ok(self)
     }
 
-    /// The next free state of the first K (0) or the others (1).
+    /// Reserves the next free state of the first K (`of` = 0) or of the others (1).
     fn place(&mut self, of: usize, is_there: bool) -> Result<usize, Error> {
         let end = if of == 0 { K } else { N };
         let taken = self.taken.get_mut(of).filter(|taken| is_there && usize::from(**taken) < end);
@@ -241,7 +245,7 @@ impl<const N: usize, const K: usize, const P: usize> AugmentedModel<N, K, P> {
         Ok(())
     }
 
-    /// Takes a state's share in one of the four from what refers to the ground.
+    /// Subtracts a state's contribution to one of the four from the outputs relative to the ground.
     fn grounded(&mut self, state: usize, moved: usize, share: f64) {
         for (output, known) in self.outputs.iter().enumerate() {
             if known.reference == Reference::Ground
@@ -252,21 +256,21 @@ impl<const N: usize, const K: usize, const P: usize> AugmentedModel<N, K, P> {
         }
     }
 
-    /// Whether both have the same states, known as well at the start.
+    /// Whether both models have the same states with equal initial standard deviations.
     pub(super) fn has_states_of(&self, other: &Self) -> bool {
         self.taken == other.taken && self.start == other.start
     }
 
-    /// Standard deviations of all states at the start.
+    /// Initial standard deviations of all states.
     pub const fn start(&self) -> &SVector<f64, N> {
         &self.start
     }
 
-    /// Step of the model over `interval` (s), where white noise of these standard deviations (rad; 1) a `sample` (s)
-    /// reaches the inputs δe and δt beside what is on ẋ.
+    /// The step of the model over `interval` (s), with white noise of the standard deviations `noise` (rad; 1) per
+    /// `sample` (s) on the inputs δe and δt in addition to that on ẋ.
     ///
     /// # Errors
-    /// [`Error::Design`] if an argument or the answer is not finite, or the interval is not positive.
+    /// [`Error::Design`] if an argument or the result is not finite, or the interval is not positive.
     pub fn over(
         &self,
         interval: f64,
@@ -283,7 +287,7 @@ impl<const N: usize, const K: usize, const P: usize> AugmentedModel<N, K, P> {
         }
         let flow = Flow::<N, K>::new(&self.a, &density, interval).ok_or(DesignError::NotFinite)?;
         let mut a = flow.transition;
-        // Fixed point adds roundings to what is remembered: in places that no state takes they would pile up.
+        // In fixed point, rounding errors would accumulate in unused states that are remembered.
         let [moving, others] = self.taken.map(usize::from);
         for state in (moving..K).chain(others..N) {
             if let Some(part) = a.as_columns_mut().get_mut(state).and_then(|it| it.get_mut(state)) {

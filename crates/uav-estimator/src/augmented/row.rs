@@ -1,4 +1,4 @@
-//! What is expected of an output.
+//! The expected value of an output.
 
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
@@ -6,10 +6,10 @@ use nalgebra::SVector;
 use super::{Output, Reference};
 use crate::kalman_filter::{UNITS, power_of_two};
 
-/// V among the states.
+/// Index of V among the states.
 pub(super) const AIRSPEED: usize = 2;
 
-/// a ← a + share (b − a).
+/// Linear interpolation: a ← a + share (b − a).
 #[inline(always)]
 pub(super) fn blend<T: Scalar>(a: &mut [T], b: &[T], share: T) {
     for (a, b) in a.iter_mut().zip(b) {
@@ -17,12 +17,12 @@ pub(super) fn blend<T: Scalar>(a: &mut [T], b: &[T], share: T) {
     }
 }
 
-/// The unit in which an output is measured inside a filter: a power of two.
+/// The unit of an output inside a filter: a power of two.
 pub(super) fn unit_of(output: &Output) -> f64 {
     power_of_two(output.row.iter().zip(UNITS).map(|(part, it)| (part * it).abs()).sum())
 }
 
-/// What is measured of the states, in the filter's units.
+/// An output's dependence on the states, in the filter's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -37,7 +37,7 @@ pub(super) struct Row<T: Scalar, const N: usize> {
     pub(super) parts: SVector<T, N>,
     pub(super) direct: SVector<T, 2>,
     pub(super) variance: T,
-    /// y₀ and 1/V₀ of what is in proportion to the dynamic pressure.
+    /// y₀ and 1/V₀ of an output proportional to the dynamic pressure.
     pub(super) pressure: Option<(T, T)>,
 }
 
@@ -52,7 +52,7 @@ impl<T: Scalar, const N: usize> Row<T, N> {
         }
     }
 
-    /// Of an output with these parts, by states in their units, in this unit of its own.
+    /// Creates the row of an output with these coefficients of the states (in their units), in the output's unit.
     pub(super) fn of(output: &Output, mut parts: [f64; N], unit: f64) -> Self {
         let sigma = output.sigma / unit;
         let mut pressure = None;
@@ -72,13 +72,13 @@ impl<T: Scalar, const N: usize> Row<T, N> {
         }
     }
 
-    /// Moves on to another row by a share of the way, 0 to 1.
+    /// Interpolates towards another row; `share` is from 0 to 1.
     #[inline(always)]
     pub(super) fn blend(&mut self, other: &Self, share: T) {
         blend(self.parts.as_array_mut(), other.parts.as_array(), share);
         blend(self.direct.as_array_mut(), other.direct.as_array(), share);
         self.variance += (other.variance - self.variance) * share;
-        // V₀ is that of the origin in both.
+        // Both have the origin's V₀.
         if let (Some((steady, _)), Some((others, _))) = (&mut self.pressure, other.pressure) {
             *steady += (others - *steady) * share;
         }
@@ -91,7 +91,7 @@ impl<T: Scalar, const N: usize> Row<T, N> {
             && T::all_finite(&[self.variance, steady, relative])
     }
 
-    /// What is expected of these states, and its derivatives by them.
+    /// The expected output for these states, and its derivatives with respect to them.
     #[inline(always)]
     pub(super) fn linearised<const K: usize>(
         &self,

@@ -6,17 +6,19 @@ use super::grid::Grid;
 use super::{AugmentedFilter, AugmentedStep, LocalModel, ScheduledTransition};
 use crate::Error;
 
-/// An [`AugmentedFilter`] whose model is that of the airspeed it estimates: of G local models at rising airspeeds, the two
-/// about the estimate are blended, with weights linear in the airspeed. Below the first and beyond the last of them it is
-/// that one alone.
+/// An [`AugmentedFilter`] whose model depends on the estimated airspeed.
 ///
-/// What is blended are steps over an interval and rows of outputs, so that a sample takes no matrix exponential. That many
-/// linear models which overlap make one nonlinear one is the idea of Takagi and Sugeno (*Fuzzy identification of systems
-/// and its applications to modeling and control*, IEEE Trans. SMC 15, 1985) and of Murray-Smith and Johansen (*Multiple Model Approaches to
-/// Modelling and Control*, 1997). The covariance follows the blended model as if its weights were known.
+/// Of G local models at increasing airspeeds, the two around the estimate are interpolated linearly in the airspeed.
+/// Below the first and above the last one, that one alone is used.
 ///
-/// Scalar and units of what goes in and comes out are those of the [`AugmentedFilter`]; all of it deviates from the common
-/// origin of the [`LocalModel`]s.
+/// The steps over an interval and the output rows are interpolated, so that a sample needs no matrix exponential.
+/// Combining overlapping linear models into a nonlinear one is the idea of Takagi and Sugeno (*Fuzzy identification
+/// of systems and its applications to modeling and control*, IEEE Trans. SMC 15, 1985) and of Murray-Smith and
+/// Johansen (*Multiple Model Approaches to Modelling and Control*, 1997). The covariance follows the interpolated
+/// model as if its weights were known.
+///
+/// Scalar and units of inputs and results are those of the [`AugmentedFilter`]; all of them are deviations from the
+/// common origin of the [`LocalModel`]s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -41,12 +43,12 @@ pub struct ScheduledFilter<
 impl<T: Scalar, const N: usize, const K: usize, const P: usize, const G: usize>
     ScheduledFilter<T, N, K, P, G>
 {
-    /// A filter that starts at the origin, with the standard deviations of the models. Two models of one airspeed count as
-    /// one, so that a grid of fewer than G repeats its last.
+    /// Creates a filter that starts at the origin, with the initial standard deviations of the models. Models at the
+    /// same airspeed count as one: a grid of fewer than G models repeats its last.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] if a number is beyond what the scalar holds; [`Error::Grid`] if airspeeds fall, or the models have not the
-    /// same states, outputs and origin.
+    /// [`Error::NotFinite`] if a number is out of range for the scalar; [`Error::Grid`] if airspeeds decrease, or the
+    /// models differ in states, outputs or origin.
     pub fn new(models: &[LocalModel<N, K, P>; G]) -> Result<Self, Error> {
         const { assert!(G > 0, "one model at least is blended") };
         let first = models.first().ok_or(Error::Grid)?;
@@ -56,26 +58,26 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize, const G: usize>
         Ok(Self { filter, grid })
     }
 
-    /// The filter as it was at its start.
+    /// A copy of the filter, reset to its initial state.
     pub fn begun_anew(&self) -> Self {
         Self { filter: self.filter.begun_anew(), ..*self }
     }
 
-    /// The same steps, one a local model, converted once.
+    /// Converts the steps of the local models to the filter's scalar and units.
     pub fn transition(&self, steps: &[AugmentedStep<N>; G]) -> ScheduledTransition<T, N, K, G> {
         self.grid.transition(&self.filter, steps)
     }
 
-    /// The filter with its estimate, uncertainty and units. Its outputs' rows are those of the airspeed at which the last were taken
-    /// in.
+    /// The underlying filter with its estimate, uncertainty and units. Its output rows are those at the airspeed of
+    /// the last correction.
     pub const fn filter(&self) -> &AugmentedFilter<T, N, K, P> {
         &self.filter
     }
 
-    /// Moves on by a step with these inputs δe (rad) and δt, at the airspeed that is estimated before it.
+    /// Predicts over a step with these inputs δe (rad) and δt, at the airspeed estimated before it.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is as it was.
+    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is unchanged.
     pub fn predict(
         &mut self,
         transition: &ScheduledTransition<T, N, K, G>,
@@ -84,11 +86,11 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize, const G: usize>
         self.grid.predict(&mut self.filter, transition, input)
     }
 
-    /// Takes in the outputs that were measured while these inputs were applied, at the airspeed that is estimated before, and
-    /// answers with what each said beyond what was expected of it, in the outputs' units.
+    /// Processes the outputs measured while these inputs were applied, at the airspeed estimated before, and returns
+    /// their innovations, in the outputs' units.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is as it was.
+    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is unchanged.
     pub fn correct(
         &mut self,
         measured: &[Option<T>; P],
@@ -101,11 +103,11 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize, const G: usize>
         Ok(innovations)
     }
 
-    /// Moves on by a step with the inputs that were held during it, then takes in the outputs that were measured with
-    /// those of now.
+    /// Predicts over a step with the inputs held during it, then processes the outputs measured with the present
+    /// inputs.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is as it was before both.
+    /// [`Error::NotFinite`] or [`Error::Estimate`]; the filter is unchanged, including by the prediction.
     pub fn step(
         &mut self,
         transition: &ScheduledTransition<T, N, K, G>,

@@ -10,10 +10,10 @@ use crate::transitions::Transitions;
 use crate::watch::Watch;
 use crate::{Error, Sample};
 
-/// A [`ScheduledFilter`] along a flight: samples of any times, with gaps between them and outputs that are missing.
+/// A [`ScheduledFilter`] along a flight: samples at any times, with gaps and missing outputs.
 ///
-/// Gaps, gates, the clock and L are those of a [`FlightFilter`](crate::FlightFilter). A new interval is discretised for each of
-/// the G models, the copies of one that is repeated excepted.
+/// Gaps, gates, the clock and L are handled as in a [`FlightFilter`](crate::FlightFilter). A new interval is
+/// discretised for each of the G models, but only once for a repeated one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -28,18 +28,18 @@ pub struct ScheduledFlight<
     filter: ScheduledFilter<T, N, K, P, G>,
     watch: Watch<P>,
     transitions: Transitions<Models<N, K, P, G>, ScheduledTransition<T, N, K, G>, L>,
-    /// Time (µs) and input of the sample before.
+    /// Time (µs) and input of the previous sample.
     before: Option<(i64, SVector<f64, 2>)>,
 }
 
 impl<T: Scalar, const N: usize, const K: usize, const P: usize, const G: usize, const L: usize>
     ScheduledFlight<T, N, K, P, G, L>
 {
-    /// A filter of these models, measured every `usual` seconds; white noise of these standard deviations a usual interval
-    /// reaches the inputs δe (rad) and δt.
+    /// Creates a filter of these models for samples every `usual` seconds; `inputs` are the standard deviations, per
+    /// usual interval, of the white noise on the inputs δe (rad) and δt.
     ///
     /// # Errors
-    /// [`Error::NotFinite`] or [`Error::Grid`], as [`ScheduledFilter::new`].
+    /// Those of [`ScheduledFilter::new`]: [`Error::NotFinite`] or [`Error::Grid`].
     pub fn new(
         models: &[LocalModel<N, K, P>; G],
         inputs: &SVector<f64, 2>,
@@ -51,7 +51,7 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize, const G: usize, 
         Ok(Self { filter, watch: Watch::NEW, transitions, before: None })
     }
 
-    /// Says how long an interval usually is, s.
+    /// Sets the usual interval, s.
     pub fn set_usual(&mut self, usual: f64) {
         self.transitions.set_usual(usual);
     }
@@ -61,23 +61,22 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize, const G: usize, 
         self.filter.filter()
     }
 
-    /// How many times each output was left out, because it contradicted the estimate.
+    /// Number of rejections of each output, for contradicting the estimate.
     pub const fn rejected(&self) -> &[u32; P] {
         &self.watch.rejected
     }
 
-    /// Whether the estimate can be relied upon: see [`FlightFilter::health`](crate::FlightFilter::health).
+    /// Whether the estimate is reliable: see [`FlightFilter::health`](crate::FlightFilter::health).
     pub fn health(&self) -> Health {
         self.watch.health()
     }
 
-    /// Takes in a sample, in deviations from the models' origin, and answers with what each of its outputs said beyond what
-    /// was expected of it. One that is more than a second older than the one before is not late: the clock was set back, and
-    /// the filter begins anew.
+    /// Processes a sample, in deviations from the models' origin, and returns the innovations of its outputs. If it
+    /// is more than a second older than the previous one, the clock was set back, and the filter restarts.
     ///
     /// # Errors
-    /// [`Error::OutOfOrder`], [`Error::Gap`], [`Error::NotFinite`], [`Error::Design`] or [`Error::Estimate`]; the filter
-    /// is as it was.
+    /// [`Error::OutOfOrder`], [`Error::Gap`], [`Error::NotFinite`], [`Error::Design`] or [`Error::Estimate`]; the
+    /// filter is unchanged.
     pub fn take(&mut self, sample: &Sample<P>) -> Result<[Option<Innovation<f64>>; P], Error> {
         taken(&mut self.filter, &mut self.watch, &mut self.transitions, &mut self.before, sample)
     }

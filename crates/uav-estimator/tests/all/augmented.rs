@@ -1,4 +1,4 @@
-//! The filter of more than four states: gusts, wind, biases, a wrong trim, specific forces.
+//! The filter with more than four states: gusts, wind, biases, a wrong trim, specific forces.
 
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_uav_estimator::{
@@ -13,7 +13,7 @@ use crate::dice::Dice;
 const USUAL_S: f64 = 0.02;
 const AIRSPEED: f64 = 53.6;
 const SIGMAS: [f64; 6] = [0.003, 0.3, 0.003, 0.3, 0.3, 0.3];
-/// Specific force of the steady flight along z, and what α and δe add to it.
+/// Specific force along z in the steady flight, and its derivatives with respect to α and δe.
 const STEADY: f64 = -9.7;
 const BY_ALPHA: f64 = -108.0;
 const BY_ELEVATOR: f64 = -8.0;
@@ -27,7 +27,7 @@ fn force() -> Output {
     }
 }
 
-/// q, V, θ, specific force, ground speed, rate of climb.
+/// The outputs q, V, θ, specific force, ground speed, rate of climb.
 fn outputs() -> [Output; 6] {
     let ground = |row| Output { row, direct: [0.0; 2], sigma: 0.3, reference: Reference::Ground };
     [
@@ -48,7 +48,7 @@ fn gusts(sigma: f64) -> Gust {
 
 type Model = AugmentedModel<11, 7, 6>;
 
-/// Gusts of this size, a force on V, biases of q and θ, and a head wind.
+/// A model with gusts of this size, a force on V, biases of q and θ, and a head wind.
 fn model(gust: f64) -> Model {
     let density = SMatrix::from_diagonal(&Vector4::new(1e-8, 1e-5, 1e-4, 1e-9));
     let model = Model::new(&navion(), &density, &outputs()).unwrap();
@@ -58,10 +58,11 @@ fn model(gust: f64) -> Model {
     model.with_wind(&Drift { sigma: 8.0, rate: 0.0 }).unwrap()
 }
 
-/// What is true at a sample: α and V of the air, q, θ; gusts, force, biases, wind.
+/// The true state at a sample: α and V relative to the air, q, θ; gusts, force, biases, wind.
 type Truth = SVector<f64, 10>;
 
-/// A flight through gusts, integrated over the ground in small steps: nothing of the filter's model is in it but A and B.
+/// A flight through gusts, integrated relative to the ground in small steps: of the filter's model it only uses A and
+/// B.
 fn flight(
     seconds: f64,
     gust: f64,
@@ -103,7 +104,7 @@ fn flight(
             inertial[2] += h * force;
             inertial[1] += (1e-5 * h).sqrt() * dice.gaussian();
             inertial[2] += (1e-4 * h).sqrt() * dice.gaussian();
-            // What the tail's lag does is taken for white.
+            // The effect of the tail's lag is approximated by white noise.
             let lag = 0.5 * plant.a[(1, 1)] * gust / AIRSPEED;
             inertial[1] += lag * (2.0 * AIRSPEED / 150.0 * h).sqrt() * dice.gaussian();
             for (now, length) in gusts.iter_mut().zip([300.0, 150.0]) {
@@ -147,7 +148,7 @@ fn errors_and_innovations_are_as_large_as_the_filter_says() {
         }
     }
     let nees = nees / count / 10.0;
-    // Twenty flights of biases that do not change within one: the mean has a standard deviation of about 0.1.
+    // Twenty flights with biases that are constant within each: the mean has a standard deviation of about 0.1.
     assert!((0.6..1.4).contains(&nees), "{nees}");
     for (output, nis) in nis.iter().enumerate() {
         let nis = nis / count;
@@ -229,7 +230,8 @@ fn other_numbers_find_the_same() {
     }
 }
 
-/// A satellite receiver that is silent for three minutes, in a filter with room for more states: roundings must not pile up.
+/// A satellite receiver that is silent for three minutes, in a filter with unused states: roundings must not
+/// accumulate.
 #[test]
 fn fixed_point_goes_on_after_minutes_without_an_output() {
     let roomy = AugmentedModel::<16, 10, 6>::new(
@@ -300,7 +302,7 @@ fn a_step_is_a_prediction_and_a_correction() {
         assert_eq!(stepped.step(&transition, &held, &measured, &now), Ok(innovations));
         assert_eq!(stepped, apart);
     }
-    // The last output is refused after the others were taken in: nothing has moved.
+    // The last output is refused after the others were processed: nothing has changed.
     measured[5] = Some(f32::NAN);
     assert!(stepped.step(&transition, &held, &measured, &now).is_err());
     assert_eq!(stepped, apart);

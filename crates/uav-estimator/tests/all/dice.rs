@@ -1,4 +1,4 @@
-/// Gaussian numbers that look random.
+/// Pseudo-random Gaussian numbers.
 pub(crate) struct Dice(pub(crate) u64);
 
 impl Dice {

@@ -19,7 +19,7 @@ fn dynamics() -> Dynamics {
     Dynamics::Continuous(thesis_like())
 }
 
-/// A number from −1 to 1 that looks random.
+/// A pseudo-random number from −1 to 1.
 fn noisy(index: i64) -> f64 {
     (index as f64 * 12.9898).sin()
 }
@@ -28,7 +28,8 @@ fn input(index: i64) -> Vector2<f64> {
     Vector2::new(0.02 * (index as f64 * 0.03).sin(), 0.1)
 }
 
-/// The aircraft's samples at these multiples of 10 ms, all outputs measured with a little noise, and its last state.
+/// The aircraft's samples at these multiples of 10 ms, with all outputs measured with a little noise, and its last
+/// state.
 fn flight(at: &[i64]) -> (Vec<Sample<3>>, Vector4<f64>) {
     let plant = zero_order_hold(&thesis_like().a, &thesis_like().b, USUAL_S).unwrap();
     let mut state = Vector4::new(0.05, 0.0, 3.0, 0.1);
@@ -73,7 +74,7 @@ fn gaps_and_missing_outputs_cost_little() {
         let residuals = observer.take(sample).unwrap();
         assert_eq!(residuals[1].is_none(), sample.measured[1].is_none());
         if sample.time_us == 3_400_000 {
-            // The gap's noise is in the variance that was expected of the first sample after it.
+            // The noise during the gap is in the expected variance of the first sample after it.
             let airspeed = innovations[1].unwrap();
             assert!(airspeed.variance > known[2].powi(2) + 0.25);
         }
@@ -168,7 +169,7 @@ fn what_is_refused_changes_nothing() {
     let wild = Sample { measured: [Some(f64::NAN), None, None], ..samples[2] };
     assert_eq!(filter.take(&wild), Err(Error::NotFinite));
     assert_eq!(filter, before);
-    // Two of the model's steps, within a tenth.
+    // Two steps of the model, to within a tenth.
     assert!(filter.take(&at(30_500)).is_ok());
 }
 
@@ -180,12 +181,12 @@ fn a_discrete_model_is_stepped_over_a_gap() {
     let [seven, exact] = [model, dynamics()].map(|it| it.over(0.07, USUAL_S, &inputs).unwrap());
     assert!((seven.transition.a - exact.transition.a).amax() < 1e-13);
     assert!((seven.transition.b - exact.transition.b).amax() < 1e-13);
-    // White noise that is held for a sample, and white noise without end: nearly the same.
+    // White noise that is held for a sample, and continuous white noise: nearly the same.
     assert!((seven.noise - exact.noise).amax() < 0.2 * exact.noise.amax());
 }
 
 proptest! {
-    /// Which steps are kept changes nothing.
+    /// Which steps are cached makes no difference.
     #[test]
     fn kept_steps_are_those_computed(intervals in prop::collection::vec(9_990_i64..10_010, 1..40)) {
         let c = rate_airspeed_and_pitch();
@@ -203,7 +204,8 @@ proptest! {
     }
 }
 
-/// After 3 s, one sample in thirty has an output that is off by forty times its noise: a tenth of a radian, twenty metres a second.
+/// After 3 s, one sample in thirty has an output that is off by forty times its noise: a tenth of a radian, twenty
+/// metres per second.
 fn spiked(samples: &[Sample<3>]) -> Vec<Sample<3>> {
     let mut samples = samples.to_vec();
     for (index, sample) in samples.iter_mut().enumerate().skip(300) {
@@ -245,7 +247,7 @@ fn spikes_cost_little() {
     assert!(worst_filter < 0.5 && worst_observer < 0.5, "{worst_filter} {worst_observer}");
 }
 
-/// A gate that would never open again would lose an aircraft that does what the model does not know.
+/// A gate that never opened again would lose an aircraft whose motion deviates from the model.
 #[test]
 fn what_has_changed_is_followed() {
     let (mut samples, _) = flight(&(0..2000).collect::<Vec<_>>());
@@ -265,7 +267,7 @@ fn what_has_changed_is_followed() {
     assert!(found.iter().all(|found| (found - expected).abs() < 10.0), "{found:?} {expected}");
 }
 
-/// Whether it is told that inputs and outputs are not of one time, at any sample of thirty seconds.
+/// Whether it is reported at any sample of thirty seconds that inputs and outputs are not simultaneous.
 fn is_told<T: kestirim_scalar::Scalar>(outputs_late: usize, inputs_late: usize) -> bool {
     let (samples, _) = flight(&(0..3000).collect::<Vec<_>>());
     let c = rate_airspeed_and_pitch();

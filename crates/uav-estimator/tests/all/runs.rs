@@ -1,5 +1,5 @@
-//! Runs of broken samples among good ones: whatever comes, every estimate is finite, and the aircraft is followed again
-//! within ten seconds. `PROPTEST_CASES` sets the number of sequences.
+//! Runs of broken samples among good ones: every estimate remains finite, and the aircraft is tracked again within ten
+//! seconds. `PROPTEST_CASES` sets the number of sequences.
 
 use kestirim_observer_design::{Complex, zero_order_hold};
 use kestirim_scalar::{Q16_16, Scalar};
@@ -12,7 +12,7 @@ use proptest::prelude::*;
 
 const USUAL_S: f64 = 0.01;
 
-/// What is wrong with a run of samples.
+/// The fault in a run of samples.
 #[derive(Clone, Copy, Debug)]
 enum Fault {
     Zero,
@@ -57,19 +57,19 @@ fn any_run(begin: std::ops::Range<usize>, length: usize) -> impl Strategy<Value 
     (fault, begin, 1..=length).prop_map(|(fault, begin, length)| Run { fault, begin, length })
 }
 
-/// Pitch rate (rad/s), airspeed (m/s) and pitch (rad) at the ends of their sensors.
+/// Pitch rate (rad/s), airspeed (m/s) and pitch angle (rad) at the limits of their sensors.
 const RAILS: [f64; 3] = [8.7, 100.0, 3.1];
 
 fn noise() -> Noise<3> {
     Noise { inputs: Vector2::new(0.009, 0.02), outputs: Vector3::new(0.009, 0.5, 0.009) }
 }
 
-/// From −1 to 1.
+/// Pseudo-random noise from −1 to 1.
 fn noisy(index: usize) -> f64 {
     (index as f64 * 12.9898).sin()
 }
 
-/// A flight of so many samples, and the states.
+/// A flight of this many samples, and the states.
 fn flight(count: usize) -> (Vec<Sample<3>>, Vec<Vector4<f64>>) {
     let plant = zero_order_hold(&thesis_like().a, &thesis_like().b, USUAL_S).unwrap();
     let mut state = Vector4::new(0.05, 0.0, 3.0, 0.1);
@@ -123,7 +123,7 @@ fn spoil(samples: &mut Vec<Sample<3>>, run: &Run) {
     }
 }
 
-/// α, q, V and θ in what is little of each: 1 is near.
+/// Largest error of α, q, V and θ, relative to small errors of each: below 1 is near.
 fn off(estimate: &SVector<f64, 4>, truth: &Vector4<f64>) -> f64 {
     (estimate - truth).component_div(&Vector4::new(0.02, 0.05, 1.0, 0.03)).amax()
 }
@@ -131,7 +131,7 @@ fn off(estimate: &SVector<f64, 4>, truth: &Vector4<f64>) -> f64 {
 struct Estimators<T: Scalar> {
     filter: FlightFilter<T, 3>,
     observer: FlightObserver<T, 3>,
-    /// Of regular samples, which it takes one after the other.
+    /// For regular samples, which it processes one after the other.
     constant: Estimator<T, 3>,
 }
 

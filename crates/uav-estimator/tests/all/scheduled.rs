@@ -1,4 +1,4 @@
-//! Models of several airspeeds that are blended.
+//! Interpolated models at several airspeeds.
 
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_uav_estimator::{
@@ -11,12 +11,12 @@ use nalgebra::{SMatrix, SVector, Vector2, Vector4};
 use crate::dice::Dice;
 
 const USUAL_S: f64 = 0.02;
-/// m/s.
+/// Airspeeds of the models, m/s.
 const X8: [f64; 5] = [14.0, 16.0, 18.0, 20.0, 22.0];
 const AEROSONDE: [f64; 5] = [26.0, 30.0, 34.0, 38.0, 42.0];
-/// Where deviations are counted from.
+/// Index of the model from whose steady flight deviations are counted.
 const ORIGIN: usize = 2;
-/// Of q, V, θ and az.
+/// Standard deviations of q, V, θ and az.
 const SIGMAS: [f64; 4] = [0.005, 0.3, 0.01, 0.3];
 
 type Local = LocalModel<10, 7, 4>;
@@ -25,13 +25,13 @@ fn trim(airframe: &Airframe, airspeed: f64) -> Trim {
     airframe.trim(&SteadyFlight { airspeed, climb_angle: 0.0 }).unwrap()
 }
 
-/// q, V, θ and the specific force down.
+/// The outputs q, V, θ and the specific force downwards.
 fn shown(airframe: &Airframe, at: &Trim) -> SVector<f64, 4> {
     let force = airframe.specific_force(at).unwrap().steady[1];
     SVector::from([at.state[1], at.state[2], at.state[3], force])
 }
 
-/// The model near a steady flight: unknown forces, biases of q, θ and az.
+/// The model near a steady flight: unknown forces, and biases of q, θ and az.
 fn local(airframe: &Airframe, airspeed: f64, origin: &Trim) -> Local {
     let trim = trim(airframe, airspeed);
     let plant = airframe.linearise(&trim).unwrap();
@@ -71,7 +71,8 @@ fn grid(airframe: &Airframe, airspeeds: &[f64; 5]) -> [Local; 5] {
     airspeeds.map(|airspeed| local(airframe, airspeed, &origin))
 }
 
-/// A nonlinear flight in calm air over all airspeeds of the grid and back, in deviations from the origin, and its true states.
+/// A nonlinear flight in calm air over all airspeeds of the grid and back, in deviations from the origin, with its
+/// true states.
 fn flight(
     airframe: &Airframe,
     airspeeds: &[f64; 5],
@@ -124,10 +125,10 @@ fn flight(
     (samples, truths)
 }
 
-/// After the estimate has settled.
+/// Number of samples after which the estimate has settled.
 const SETTLED: usize = 250;
 
-/// Errors of an estimate: rms of the four states, and their mean normalised square.
+/// Errors of an estimate: root mean squares for the four states, and the mean normalised square.
 struct Errors {
     rms: [f64; 4],
     nees: f64,
@@ -154,7 +155,7 @@ fn errors(
     Errors { rms: squares.map(|square| (square / count).sqrt()), nees: nees / count }
 }
 
-/// Covariance of the four states, SI.
+/// Covariance of the four states, in SI units.
 macro_rules! known {
     ($flight:expr) => {{
         let filter = $flight.filter();
@@ -183,7 +184,7 @@ fn by_grid<T: Scalar>(
     (errors, estimates)
 }
 
-/// By one model, whose deviations are from its own steady flight.
+/// The errors with a single model, whose deviations are from its own steady flight.
 fn by_one(local: &Local, samples: &[Sample<4>], truths: &[Vector4<f64>]) -> Errors {
     let mut flight =
         AugmentedFlight::<f64, 10, 7, 4>::new(&local.model, &Vector2::zeros(), USUAL_S).unwrap();
@@ -198,9 +199,10 @@ fn by_one(local: &Local, samples: &[Sample<4>], truths: &[Vector4<f64>]) -> Erro
     })
 }
 
-/// Found are 1.6 to 2.5 times of the middle model, which is the best, 3.1 to 5.0 of its neighbours and 7.5 to 12.6 of those at the ends.
-/// The process noise stands for models that are wrong by a tenth, and these are exact where they stand: σ is too large, and
-/// the normalised square 0.43 to 0.55. Of one model it is 0.75 to 1.06 in the middle and 5.4 to 17 at the ends.
+/// Measured errors relative to the grid's: 1.6 to 2.5 for the middle model, which is the best, 3.1 to 5.0 for its
+/// neighbours and 7.5 to 12.6 for those at the ends. The process noise represents models that are wrong by a tenth,
+/// and these are exact at their airspeeds: σ is too large, and the normalised square 0.43 to 0.55. For a single model
+/// it is 0.75 to 1.06 in the middle and 5.4 to 17 at the ends.
 #[test]
 fn over_all_airspeeds_the_grid_is_better_than_the_best_of_its_models() {
     for (name, airframe, airspeeds) in [
@@ -256,7 +258,7 @@ fn a_grid_of_one_model_is_its_filter() {
     assert_eq!(alone.health(), blended.health());
 }
 
-/// With gusts and a head wind; the four states, the specific force and the rate of climb.
+/// A model with gusts and a head wind; its outputs are the four states, the specific force and the rate of climb.
 fn windy(airframe: &Airframe, airspeed: f64, origin: &Trim) -> LocalModel<7, 6, 6> {
     let trim = trim(airframe, airspeed);
     let force = airframe.specific_force(&trim).unwrap();
@@ -304,7 +306,7 @@ fn each_steady_flight_of_the_grid_stays_and_shows_what_it_shows() {
         let measured = std::array::from_fn(|output| {
             (output < 4).then_some(local.outputs[output] / units[output])
         });
-        // The first finds the airspeed, the second what is blended there.
+        // The first correction finds the airspeed, the second the interpolation there.
         for _ in 0..2 {
             filter.correct(&measured, &local.input).unwrap();
         }
@@ -323,7 +325,7 @@ fn each_steady_flight_of_the_grid_stays_and_shows_what_it_shows() {
             assert!(force.abs() < 1e-4 && climb.abs() < 1e-4, "{force} {climb}");
             filter.predict(&transition, &local.input).unwrap();
         }
-        // Its rows are those of the airspeed at which outputs were taken in last.
+        // Its rows are those at the airspeed of the last correction.
         let mut begun = filter.begun_anew();
         begun.correct(&[None; 6], &local.input).unwrap();
         assert_eq!(begun, ScheduledFilter::new(&grid).unwrap());
@@ -340,7 +342,7 @@ fn between_two_models_it_is_their_mean() {
     let transition = filter.transition(&steps);
     let input = Vector2::new(0.01, 0.02);
     filter.predict(&transition, &input).unwrap();
-    // From zero, each goes by (I − A) d − B e + B u.
+    // From zero, each moves by (I − A) d − B e + B u.
     let moved = [0, 1].map(|which| {
         let a = steps[which].transition.a.fixed_view::<4, 4>(0, 0).into_owned();
         let b = steps[which].transition.b.fixed_rows::<4>(0).into_owned();
@@ -412,7 +414,7 @@ fn what_is_no_grid_is_refused_and_a_refused_sample_changes_nothing() {
     let mut broken = samples[5];
     broken.measured[2] = Some(f64::NAN);
     assert_eq!(flown.take(&broken), Err(Error::NotFinite));
-    // Finite, but not in the filter's scalar.
+    // Finite, but out of range for the filter's scalar.
     broken.measured[2] = Some(1e300);
     assert!(flown.take(&broken).is_err());
     assert_eq!(flown, before);
@@ -420,7 +422,7 @@ fn what_is_no_grid_is_refused_and_a_refused_sample_changes_nothing() {
     assert_eq!(flown.take(&late), Err(Error::Gap(39_999.92)));
     assert_eq!(flown, before);
     flown.take(&samples[5]).unwrap();
-    // The clock was set back: it begins anew.
+    // The clock was set back: it restarts.
     flown.take(&Sample { time_us: -2_000_000, ..samples[0] }).unwrap();
     let mut new =
         ScheduledFlight::<f32, 10, 7, 4, 5>::new(&grid, &Vector2::zeros(), USUAL_S).unwrap();

@@ -1,4 +1,4 @@
-//! Flights whose model is known.
+//! Flights of a known model.
 
 mod refusals;
 mod simulated;

@@ -26,7 +26,7 @@ fn what_is_no_flight_is_refused_with_the_reason() {
     assert!(matches!(refused(standing), Error::NotFlying(_)));
 }
 
-/// Changes a column.
+/// Applies a change to a column.
 fn change(flight: &mut Flight, name: &str, change: impl Fn(f64) -> f64) {
     let (_, values) = flight.columns.iter_mut().find(|(column, _)| column == name).unwrap();
     values.iter_mut().flatten().for_each(|value| *value = change(*value));

@@ -1,4 +1,4 @@
-//! An aircraft that is flown through a 3-2-1-1 and doublets of the throttle, with noise of air and sensors.
+//! An aircraft that is flown through 3-2-1-1 inputs and doublets of the throttle, with noise of air and sensors.
 
 use kestirim_uav_identification::Flight;
 use nalgebra::{Matrix4, SMatrix, Vector2, Vector4};
@@ -9,24 +9,24 @@ use rand_xoshiro::rand_core::SeedableRng;
 pub(crate) const STEP_S: f64 = 0.02;
 const GRAVITY: f64 = 9.806_65;
 const AIRSPEED: f64 = 20.0;
-/// What is between two samples.
+/// Number of integration steps between two samples.
 const FINE: usize = 10;
 
-/// Derivatives of α̇, q̇, V̇ by α, q, V, δe, δt; `Z_q` without the 1.
+/// Derivatives of α̇, q̇, V̇ with respect to α, q, V, δe, δt; `Z_q` without the kinematic 1.
 pub(crate) const TRUE: [[f64; 5]; 3] = [
     [-4.0, -0.03, -0.045, -0.2, 0.0],
     [-40.0, -5.0, 0.1, -35.0, -1.0],
     [4.0, 0.0, -0.25, -0.5, 5.0],
 ];
 
-/// What is chosen of a flight.
+/// The parameters of a flight.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Plan {
     pub(crate) seconds: f64,
     pub(crate) seed: u64,
-    /// Noise on ẋ, per square root of a hertz.
+    /// Noise on ẋ, per √Hz.
     pub(crate) gusts: [f64; 4],
-    /// Added to `X_V`: above 0.25 the phugoid grows.
+    /// Added to `X_V`: above 0.25 the phugoid is unstable.
     pub(crate) lively: f64,
     pub(crate) throttle: bool,
 }
@@ -34,7 +34,7 @@ pub(crate) struct Plan {
 pub(crate) const CALM: Plan =
     Plan { seconds: 60.0, seed: 1, gusts: [0.0; 4], lively: 0.0, throttle: true };
 
-/// 3-2-1-1 of the elevator every 20 s, a doublet of the throttle between.
+/// A 3-2-1-1 of the elevator every 20 s, with a doublet of the throttle in between.
 fn input(time: f64, plan: &Plan) -> Vector2<f64> {
     let at = time % 20.0;
     let sign = if (time / 20.0) as i64 % 2 == 0 { 1.0 } else { -1.0 };
@@ -52,7 +52,7 @@ fn input(time: f64, plan: &Plan) -> Vector2<f64> {
     Vector2::new(sign * elevator, if plan.throttle { throttle } else { 0.0 })
 }
 
-/// Flies it.
+/// Simulates the flight.
 pub(crate) fn fly(plan: &Plan) -> Flight {
     let [z, m, x] = TRUE;
     let a = Matrix4::new(
@@ -86,7 +86,7 @@ pub(crate) fn fly(plan: &Plan) -> Flight {
         let time = sample as f64 * STEP_S;
         let now = input(time, plan);
         let rate = a * state + b * now;
-        // Along and across the path; then along the body, which is turned by α.
+        // Along and across the path; then along the body, which is rotated by α.
         let along = rate[2] + GRAVITY * (state[3] - state[0]).sin();
         let across = AIRSPEED * (rate[0] - state[1]) - GRAVITY * (state[3] - state[0]).cos();
         let alpha = trim[0] + state[0];

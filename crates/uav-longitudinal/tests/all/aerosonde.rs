@@ -1,4 +1,4 @@
-//! The Aerosonde: its published coefficients lead to the card's numbers.
+//! The Aerosonde: its published coefficients reproduce the card's numbers.
 
 use kestirim_uav_longitudinal::{
     Airframe, Descriptor, Error, Stall, StateSpace, SteadyFlight, Trim, aerosonde,
@@ -51,7 +51,7 @@ fn with_stall_it_is_hardly_another_aircraft_at_40_metres_a_second() -> Result<()
     let model = airframe.linearise(&airframe.trim(&CLIMB)?)?;
     let worst = difference(&model, &card());
     assert!(worst > 1e-11 && worst < 1e-9, "{worst}");
-    // Far beyond the stall the lift is a flat plate's, of the sign of α.
+    // Far beyond the stall the lift is that of a flat plate, with the sign of α.
     let lift = |alpha: f64| -> Result<f64, Error> {
         let state = SVector::from([alpha, 0.0, 40.0, alpha]);
         let alpha_dot = airframe.rates(&state, &SVector::from([0.0, 0.5]))?[0];
@@ -70,7 +70,7 @@ fn with_stall_it_is_hardly_another_aircraft_at_40_metres_a_second() -> Result<()
 #[test]
 fn stability_derivatives_are_another_way_to_the_same_model() -> Result<(), Error> {
     let mut airframe = Airframe::aerosonde();
-    // What the Aerosonde has none of.
+    // Terms that the Aerosonde does not have.
     airframe.lift.pitch_rate = 4.0;
     airframe.lift.stall = Some(Stall { alpha: 0.2, sharpness: 30.0 });
     for flight in [CLIMB, SteadyFlight { airspeed: 25.0, climb_angle: -0.1 }] {
@@ -83,7 +83,7 @@ fn stability_derivatives_are_another_way_to_the_same_model() -> Result<(), Error
     Ok(())
 }
 
-/// Downwash that lags behind is what E is for.
+/// E exists for downwash lag.
 #[test]
 fn e_holds_what_depends_on_accelerations() -> Result<(), Error> {
     let airframe = Airframe::aerosonde();
@@ -94,7 +94,7 @@ fn e_holds_what_depends_on_accelerations() -> Result<(), Error> {
     assert_eq!((e[(0, 0)], e[(1, 0)]), (42.0, 0.7));
     let model = derivatives.descriptor().resolve()?;
     assert!((e * model.a - a).amax() < 1e-12 && (e * model.b - b).amax() < 1e-12);
-    // By hand: V̇ and θ̇ do not feel it, α̇ is divided by V − Zα̇, q̇ takes Mα̇·α̇.
+    // By hand: V̇ and θ̇ are unaffected, α̇ is divided by V − Zα̇, q̇ gains Mα̇·α̇.
     let plain = card();
     assert!((model.a[(0, 1)] - 40.0 / 42.0).abs() < 1e-12);
     let q_row = plain.a.row(1) - 0.7 * model.a.row(0);
@@ -105,7 +105,7 @@ fn e_holds_what_depends_on_accelerations() -> Result<(), Error> {
     Ok(())
 }
 
-/// The book's lateral model about the body's axes (v = V·β): p and r are turned by α, nothing else.
+/// The book's lateral model about the body's axes (v = V·β), where only p and r are rotated by α.
 #[test]
 fn lateral_model_is_the_books_turned_by_alpha() -> Result<(), Error> {
     let airframe = Airframe::aerosonde();

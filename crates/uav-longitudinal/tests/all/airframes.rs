@@ -1,9 +1,10 @@
-//! Trim and eigenvalues of two airframes beside a reference in 60 digits: `python3 tests/airframes.py` prints it.
+//! Trim and eigenvalues of two airframes against a reference with 60 digits, which `python3 tests/airframes.py`
+//! prints.
 
 use kestirim_uav_longitudinal::{Airframe, Error, SteadyFlight};
 use nalgebra::{Complex, SVector};
 
-/// Airspeed, climb angle; angle of attack, elevator and throttle; one eigenvalue of each pair.
+/// Airspeed and climb angle; angle of attack, elevator and throttle; one eigenvalue of each pair.
 type Flight = ([f64; 2], [f64; 3], [[f64; 2]; 2]);
 
 const AEROSONDE: [Flight; 2] = [
@@ -84,10 +85,10 @@ fn an_accelerometer_shows_what_rates_say() -> Result<(), Error> {
         let force = airframe.specific_force(&trim)?;
         let at_rest = [trim.state[3].sin(), -trim.state[3].cos()].map(|part| 9.81 * part);
         for (axis, weight) in at_rest.iter().enumerate() {
-            // Nothing accelerates, so the weight is what is felt.
+            // Without acceleration, the specific force is that of the weight.
             assert!((force.steady[axis] - weight).abs() < 1e-12, "{axis}");
         }
-        // Slopes are those of differences.
+        // The derivatives agree with finite differences.
         for (place, step) in [1e-5, 1e-5, 1e-4, 1e-5, 1e-5, 1e-5].into_iter().enumerate() {
             let mut changed = SVector::<f64, 2>::zeros();
             for way in [1.0, -1.0] {

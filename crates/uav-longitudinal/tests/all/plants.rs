@@ -1,4 +1,4 @@
-//! The typed plants, what is measured of them, and that nothing panics.
+//! The example plants, their output matrices, and the absence of panics.
 
 use kestirim_uav_longitudinal::{
     Airframe, Descriptor, Drag, LongitudinalDerivatives, Stall, SteadyFlight, Trim,
@@ -45,7 +45,7 @@ proptest! {
             &mut airframe.pitch.zero, &mut airframe.pitch.alpha, &mut airframe.pitch.elevator,
             &mut airframe.propeller.motor, &mut airframe.inertia.xz,
         ];
-        // One in four is broken: of all, none would get past the first check.
+        // One in four is broken: if all were, none would pass the first check.
         for (field, pair) in fields.into_iter().zip(numbers.chunks(2)) {
             if pair[0] > 1.5 { *field = pair[1]; }
         }

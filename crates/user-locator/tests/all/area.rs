@@ -1,4 +1,4 @@
-//! Areas, channels within them, and the search of one, in every number type.
+//! Areas, channels restricted to them, and searches of them, in every number type.
 
 use kestirim_air_to_ground::{Channel, Environment, FreeSpace, Likelihood, Measurement};
 use kestirim_particle_filter::{Error as FilterError, Region};
@@ -27,7 +27,7 @@ fn check_polygon<T: Scalar>() -> Outcome {
     let moved = area.relative_to([T::ONE, -T::TWO])?;
     assert_eq!(moved.region().low(), &[-T::ONE, T::TWO]);
     assert!(moved.contains([T::ZERO, T::from_f64(2.5)]));
-    // The corners the other way round enclose the same.
+    // The corners in reverse order enclose the same area.
     let mut corners = NOTCHED;
     corners.reverse();
     assert!((polygon::<T>(&corners)?.size() - area.size()).abs() < T::from_f64(1e-3));
@@ -66,7 +66,7 @@ fn no_user_is_outside_of_a_channels_area() -> Outcome {
     Ok(())
 }
 
-/// Levels of a beacon of −20 dB at one metre from number `k` of a flight round it.
+/// Levels of a beacon of −20 dB at one metre, at point `k` of a flight around it.
 fn measured(k: u32) -> Result<Measurement<f64>, Error> {
     let angle = f64::from(k) * 0.7;
     let radius = 50.0 + 5.0 * f64::from(k % 40);
@@ -91,7 +91,7 @@ fn a_search_is_a_beacon_in_an_area() -> Outcome {
     assert_eq!((found.place, found.level), (same.place, same.level));
     assert!(search.credible(&found, [120.0, -40.0], 0.9));
     assert_eq!(search.area(), &area);
-    // However long the flight is, and where the transmitter cannot be.
+    // However long the flight is, and wherever the transmitter cannot be.
     for k in 40..1000 {
         search.measure(&measured(k)?);
     }

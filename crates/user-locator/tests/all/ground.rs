@@ -1,4 +1,5 @@
-//! Flights over open ground with all that a channel can be unknown of: are places found, and regions honest?
+//! Flights over open ground with a channel of which everything is unknown: are positions found, and are regions
+//! honest?
 
 use kestirim_air_to_ground::{Heading, Measurement, OpenGround};
 use kestirim_particle_filter::{Error as FilterError, Xoshiro128PlusPlus};
@@ -6,7 +7,7 @@ use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_user_locator::{Area, Error, GroundSearch, Health};
 use rand_core::{Rng, SeedableRng};
 
-/// Chance, in double precision.
+/// Random numbers in double precision.
 pub(crate) struct Chance(pub(crate) Xoshiro128PlusPlus);
 
 impl Chance {
@@ -14,7 +15,7 @@ impl Chance {
         low + (high - low) * f64::from(self.0.next_u32()) / 4_294_967_296.0
     }
 
-    /// Of mean 0 and variance 1 (Box and Muller).
+    /// A number of mean 0 and variance 1 (Box and Muller).
     pub(crate) fn normal(&mut self) -> f64 {
         let radius = (-2.0 * (1.0 - self.between(0.0, 1.0)).ln()).sqrt();
         radius * (std::f64::consts::TAU * self.between(0.0, 1.0)).cos()
@@ -25,16 +26,16 @@ impl Chance {
     }
 }
 
-/// A flight, its area's corners, and where the transmitter is.
+/// A flight, the corners of its area, and the place of the transmitter.
 pub(crate) struct Flight {
     stops: Vec<([f64; 2], f64, f64)>,
-    /// Along the track, rad from north to east.
+    /// Headings along the track, rad from north to east.
     pub(crate) headings: Vec<f64>,
     corners: [[f64; 2]; 4],
     truth: [f64; 2],
 }
 
-/// Where a drone measures: lines to and fro, a spiral, or legs between random places.
+/// The places at which a drone measures: parallel lines, a spiral, or legs between random places.
 fn path(chance: &mut Chance) -> Vec<[f64; 2]> {
     let (side, step) = (chance.between(100.0, 350.0), chance.between(8.0, 20.0));
     let half = side / 2.0;
@@ -79,7 +80,7 @@ fn path(chance: &mut Chance) -> Vec<[f64; 2]> {
     places.iter().map(|[x, y]| [x * turn.1 - y * turn.0, x * turn.0 + y * turn.1]).collect()
 }
 
-/// Gain of a dipole with an axis, some of whose null is filled, dB.
+/// Gain of a dipole with this axis and partly filled nulls, dB.
 pub(crate) fn dipole(sight: [f64; 3], axis: [f64; 3], fill: f64) -> f64 {
     let cosine: f64 = sight.iter().zip(axis).map(|(a, b)| a * b).sum();
     10.0 * ((1.0 - cosine * cosine) * (1.0 - fill) + fill).log10()
@@ -91,7 +92,7 @@ pub(crate) fn axis(chance: &mut Chance) -> [f64; 3] {
     axis.map(|part| part / length)
 }
 
-/// Directions in which a drone flies that looks where it goes.
+/// The headings of a drone that looks in the direction of flight.
 fn along(places: &[[f64; 2]]) -> Vec<f64> {
     let leg = |pair: &[[f64; 2]]| (pair[1][0] - pair[0][0]).atan2(pair[1][1] - pair[0][1]);
     let mut headings: Vec<f64> = places.windows(2).map(leg).collect();
@@ -99,14 +100,14 @@ fn along(places: &[[f64; 2]]) -> Vec<f64> {
     headings
 }
 
-/// A flight whose drone has no pattern that turns with it.
+/// A flight without a pattern that turns with the drone.
 fn flight(chance: &mut Chance) -> Flight {
     flight_with(chance, |_| 0.0)
 }
 
-/// Exponents of 1 to 3, no dipole or up to two of any axis, noise of 0.5 to 4 dB that for one flight in two is
-/// correlated shadowing, nulls, floors that signals drown in or that clip them. `drone` is the gain (dB) of the drone's antenna for a line
-/// of sight from the transmitter, as forward, right, up.
+/// A flight with an exponent of 1 to 3, no dipole or up to two with any axes, noise of 0.5 to 4 dB that for one flight
+/// in two is correlated shadowing, nulls, floors that signals drown in or that clip them. `drone` is the gain (dB) of
+/// the drone's antenna for a line of sight from the transmitter, as forward, right, up.
 pub(crate) fn flight_with(chance: &mut Chance, drone: impl Fn([f64; 3]) -> f64) -> Flight {
     let places = path(chance);
     let (margin, height) = (chance.between(20.0, 120.0), chance.between(12.0, 60.0));
@@ -135,7 +136,7 @@ pub(crate) fn flight_with(chance: &mut Chance, drone: impl Fn([f64; 3]) -> f64) 
         at += dipoles.iter().map(|axis| dipole(sight, *axis, fill)).sum::<f64>();
         let ([east, north, up], (sine, cosine)) = (sight, heading.sin_cos());
         at += drone([east * sine + north * cosine, east * cosine - north * sine, up]);
-        // Along the path, as Gudmundson's model has it.
+        // Correlated along the path, as in Gudmundson's model.
         let kept = (-(x - before[0]).hypot(y - before[1]) / decay).exp();
         before = [x, y];
         shadow = kept * shadow + (1.0 - kept * kept).sqrt() * chance.normal();
@@ -167,7 +168,7 @@ pub(crate) fn flight_with(chance: &mut Chance, drone: impl Fn([f64; 3]) -> f64) 
     Flight { stops, headings, corners, truth }
 }
 
-/// Error, σ, and whether the 90 % region holds the transmitter.
+/// The error, σ, and whether the 90 % region contains the transmitter.
 pub(crate) fn find<T: Scalar, const L: usize>(
     flight: &Flight,
     headings: &[Heading<T>],
@@ -190,14 +191,15 @@ pub(crate) fn find<T: Scalar, const L: usize>(
     Ok((error, found.sigma.to_f64(), is_held))
 }
 
-/// Mean error, root mean square of σ over that of the errors, and the share of regions that hold the transmitter.
+/// Mean error, ratio of the root mean squares of σ and of the errors, and the share of regions that contain the
+/// transmitter.
 fn statistics<T: Scalar, const L: usize>(flights: u64) -> [f64; 3] {
     statistics_of::<T, L>(flights, |seed| {
         (flight(&mut Chance(Xoshiro128PlusPlus::seed_from_u64(seed))), Vec::new())
     })
 }
 
-/// Of other flights, with the headings that are known.
+/// The statistics of other flights, with the headings that are known.
 pub(crate) fn statistics_of<T: Scalar, const L: usize>(
     flights: u64,
     fly: impl Fn(u64) -> (Flight, Vec<Heading<T>>),
@@ -224,7 +226,7 @@ pub(crate) fn statistics_of<T: Scalar, const L: usize>(
 #[test]
 fn regions_of_flights_with_floors_and_dipoles_are_honest() {
     let [_, ratio, held] = statistics::<f32, 300>(60);
-    // Three standard deviations of a share of sixty about the range that a thousand are in.
+    // Three standard deviations, for sixty flights, around the range that holds for a thousand.
     assert!((0.74..=1.0).contains(&held), "{held}");
     assert!((0.7..1.5).contains(&ratio), "{ratio}");
 }

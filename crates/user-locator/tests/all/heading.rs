@@ -1,4 +1,4 @@
-//! Flights of drones that look where they fly: does it pay to know their heading?
+//! Flights of drones that look in the direction of flight: is a known heading worth it?
 
 use kestirim_air_to_ground::{Heading, Measurement, OpenGround};
 use kestirim_particle_filter::Xoshiro128PlusPlus;
@@ -8,20 +8,20 @@ use rand_core::SeedableRng;
 
 use crate::ground::{Chance, Flight, axis, dipole, find, flight_with, statistics_of};
 
-/// An antenna that is fixed to a drone.
+/// An antenna fixed to a drone.
 #[derive(Clone, Copy, Debug)]
 enum Antenna {
-    /// The same in all directions: what has a pattern is the transmitter's, which does not turn.
+    /// The gain is the same in all directions: only the transmitter's antenna has a pattern, which does not turn.
     Isotropic,
-    /// Of any axis, for one drone in three upright.
+    /// A dipole with any axis, upright for one drone in three.
     Dipole,
-    /// 3 to 9 dBi, up to 60° below the horizon to any side, with some radiation to the back.
+    /// A patch of 3 to 9 dBi, pointing up to 60° below the horizon in any direction, with some radiation to the back.
     Patch,
 }
 
-/// A flight, and its headings as a compass tells them: 3° off from flight to flight, and 3° from place to place.
+/// A flight, and its headings from a compass: with errors of 3° from flight to flight, and of 3° from place to place.
 fn flight<T: Scalar>(antenna: Antenna, seed: u64) -> (Flight, Vec<Heading<T>>) {
-    // Another seed than that of the flight.
+    // A seed different from that of the flight.
     let mut chance = Chance(Xoshiro128PlusPlus::seed_from_u64(seed + 1_000_000));
     let tilted = axis(&mut chance);
     let axis = if chance.happens(0.3) { [0.0, 0.0, 1.0] } else { tilted };
@@ -32,7 +32,7 @@ fn flight<T: Scalar>(antenna: Antenna, seed: u64) -> (Flight, Vec<Heading<T>>) {
         Antenna::Isotropic => 0.0,
         Antenna::Dipole => dipole(sight, axis, fill),
         Antenna::Patch => {
-            // From the drone to the transmitter, which is where the line of sight comes from.
+            // From the drone to the transmitter, against the line of sight.
             let cosine: f64 = sight.iter().zip(boresight).map(|(a, b)| -a * b).sum();
             let lobe = f64::midpoint(1.0, cosine).powf(sharpness);
             10.0 * (lobe * (1.0 - fill) + fill).log10()
@@ -47,7 +47,7 @@ fn flight<T: Scalar>(antenna: Antenna, seed: u64) -> (Flight, Vec<Heading<T>>) {
     (flight, headings)
 }
 
-/// Statistics without the headings, and with them.
+/// Statistics without and with the headings.
 fn compared<const L: usize>(antenna: Antenna, flights: u64) -> [[f64; 3]; 2] {
     println!("{antenna:?}");
     let without = statistics_of::<f32, L>(flights, |seed| (flight::<f32>(antenna, seed).0, vec![]));

@@ -1,4 +1,4 @@
-//! Tests of the crate from outside, in one program: less is compiled and linked.
+//! Integration tests in a single program, so that less is compiled and linked.
 
 mod area;
 mod ground;

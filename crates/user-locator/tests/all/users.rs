@@ -1,4 +1,4 @@
-//! Users who stay and users who move, found in every number type.
+//! Stationary and moving users, located in every number type.
 
 use kestirim_air_to_ground::{
     Channel, Contaminated, Environment, FreeSpace, LevelPrior, Likelihood, Measurement,
@@ -29,7 +29,7 @@ fn distance<T: Scalar>(a: [T; 2], b: [f64; 2]) -> f64 {
     (a[0].to_f64() - b[0]).hypot(a[1].to_f64() - b[1])
 }
 
-/// What the urban channel gives with a line of sight, with half of its shadowing.
+/// A loss of the urban channel with a line of sight, with half of its shadowing.
 fn measured<T: Scalar>(
     user: [f64; 2],
     from: [f64; 2],
@@ -71,7 +71,7 @@ fn finds<T: Scalar>() -> Outcome {
     assert_eq!(credible(USER), Some(true));
     assert_eq!(credible([USER[0] + 400.0, USER[1]]), Some(false));
     assert_eq!(credible([-1.0, 0.0]), Some(false));
-    // What cannot be stored still counts, but the region is not known any more.
+    // A measurement that cannot be stored still counts, but regions are no longer known.
     best.measure(&measured(USER, circle(0), 800.0, &mut noise))?;
     assert_eq!(best.credible(&USER.map(T::from_f64), T::from_f64(0.9)), None);
     Ok(())
@@ -90,7 +90,7 @@ fn the_level_is_estimated_too() -> Outcome {
     let region = Region::new([0.0, 0.0, -10.0], [2000.0, 2000.0, 10.0])?;
     let mut locator = Locator::<f64, 1500, 24, 3>::new(urban(), &region);
     for k in 0..24 {
-        // Seven decibels weaker than the channel thinks.
+        // Seven decibels weaker than the channel assumes.
         locator.measure(&measured(USER, circle(k), 800.0, &mut noise).less(-7.0))?;
     }
     let [x, y, level] = locator.moments().mean();
@@ -117,7 +117,7 @@ fn a_robust_likelihood_survives_wild_measurements() -> Outcome {
     Ok(())
 }
 
-/// A channel that knows nothing.
+/// A channel that carries no information.
 struct Mute;
 
 impl<T: Scalar> Likelihood<T> for Mute {
@@ -141,7 +141,7 @@ fn refuses<T: Scalar>() -> Outcome {
     assert_eq!(tracker.measure(&measurement, &mut draws), degenerate);
     for (interval, error) in [(-1.0, FilterError::NotPositive), (f64::NAN, FilterError::NotFinite)]
     {
-        // Fixed point has no NaN: that is its lower rail, which is not finite either.
+        // Fixed point has no NaN: it becomes the lower rail, which is not finite either.
         let refused = tracker.predict(T::from_f64(interval), &mut draws);
         assert_eq!(refused, Err(Error::Filter(error)));
     }
@@ -160,7 +160,7 @@ fn what_nothing_explains_changes_nothing() -> Outcome {
     refuses::<Q16_16>()
 }
 
-/// Mean error over the last half of a walk round a circle; the user jumps to its other side at `jump`.
+/// Mean error over the second half of a walk round a circle; the user jumps to its other side at `jump`.
 fn follow<T: Scalar>(jump: Option<u32>, seed: u64) -> Result<f64, Error> {
     const STEPS: u32 = 240;
     let (mut noise, mut draws) = (rng(seed), rng(seed + 100));
@@ -225,25 +225,25 @@ fn the_drone_circles_low_when_it_knows_and_high_when_not() {
     assert!((radius(at(Height::Fixed(500.0), 1000.0)) - 1000.0 / 2.0_f64.sqrt()).abs() < 1e-9);
     assert_eq!(at(Height::Between(100.0, 1000.0), 10.0).height, 100.0);
     assert_eq!(at(Height::Between(100.0, 1000.0), 1e4).height, 1000.0);
-    // Round and round, and the angle stays small.
+    // After many rounds the angle is still small.
     let mut orbit = Orbit::<f64>::new(Height::Fixed(500.0));
     for _ in 0..10_000 {
         assert!((radius(orbit.next(&estimate(10.0), 2.0)) - 150.0).abs() < 1e-6);
     }
 }
 
-/// Levels of a beacon of −20 dB at one metre, from a flight round it.
+/// Levels of a beacon of −20 dB at one metre, from a flight around it.
 fn beacon(level: Option<LevelPrior<f64>>) -> Result<(Beacon<f64, 40>, [f64; 2]), Error> {
     let (place, mut noise) = ([120.0, -40.0], rng(10));
     let mut beacon = Beacon::new(FreeSpace::new(level));
     for k in 0..40 {
         let angle = f64::from(k) * 0.7;
-        // No circle: from there a place and its inversion look alike.
+        // Not a circle: from there a place and its inversion look alike.
         let radius = 50.0 + 5.0 * f64::from(k);
         let from = [radius * angle.cos(), radius * angle.sin()];
         let slant = distance(from, place).hypot(40.0);
         let shadowing = (f64::from(noise.next_u32().count_ones()) - 16.0) / 2.83 * 2.0;
-        // Every tenth in a null of the antenna.
+        // Every tenth measurement is in a null of the antenna.
         let null = if k % 10 == 9 { 20.0 } else { 0.0 };
         let received = -20.0 - 20.0 * slant.log10() + shadowing - null;
         beacon.measure(&Measurement::new(from, 40.0, -received)?)?;

@@ -1,4 +1,4 @@
-//! Does it pay to measure where the search says?
+//! Is it worth measuring where the search suggests?
 
 use kestirim_air_to_ground::{Measurement, OpenGround};
 use kestirim_particle_filter::Xoshiro128PlusPlus;
@@ -10,11 +10,11 @@ use crate::ground::{Chance, axis, dipole};
 
 const SIDE_M: f64 = 400.0;
 const HEIGHT_M: f64 = 40.0;
-/// Where the first measurements are made: along this y.
+/// The y coordinate of the line along which the first measurements are made.
 const LINE_M: f64 = 40.0;
 const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [SIDE_M, 0.0], [SIDE_M, SIDE_M], [0.0, SIDE_M]];
 
-/// A transmitter in a square, whose channel nobody knows.
+/// A transmitter in a square, with an unknown channel.
 struct World {
     truth: [f64; 2],
     exponent: f64,
@@ -41,7 +41,7 @@ impl World {
         Measurement::new(place.map(T::from_f64), T::from_f64(HEIGHT_M), loss).expect("plausible")
     }
 
-    /// A search along one side of the square, which leaves most open.
+    /// A search along one side of the square, which leaves much undecided.
     fn begun<T: Scalar>(&mut self) -> GroundSearch<T, 60, 4> {
         let area = Area::new(&CORNERS.map(|corner| corner.map(T::from_f64))).expect("a square");
         let mut search = GroundSearch::new(OpenGround::new(None), area);
@@ -57,7 +57,7 @@ impl World {
     }
 }
 
-/// Where the next measurement is made.
+/// The rule by which the next measurement's place is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Choice {
     Informative,
@@ -65,7 +65,7 @@ enum Choice {
     AtTheEstimate,
 }
 
-/// Mean error after so many more measurements.
+/// Mean error after this many more measurements.
 fn mean_error(choice: Choice, more: u32, worlds: u64) -> f64 {
     let mut sum = 0.0;
     for seed in 0..worlds {
@@ -101,7 +101,7 @@ fn one_more_measurement_tells_as_much_as_was_expected() {
         let mut search = world.begun::<f64>();
         let before = search.estimate::<100>().expect("something explains it");
         let next = search.next_waypoint(&before, HEIGHT_M).expect("more to learn");
-        // A line does not tell its left from its right, and a further measurement on it does not either.
+        // A line does not distinguish its left from its right, and neither does a further measurement on it.
         let [_, y] = next.waypoint.place;
         assert!((y - LINE_M).abs() > HEIGHT_M && next.waypoint.height == HEIGHT_M, "{next:?}");
         search.measure(&world.measurement(next.waypoint.place));
@@ -124,7 +124,7 @@ fn four_measurements_where_the_search_says_halve_the_error() {
     assert!(told < 0.85 * anywhere && told < 0.85 * there && told < 0.6 * begun);
 }
 
-/// Of a search in another scalar.
+/// The next waypoint of a search in another scalar.
 fn next<T: Scalar>() -> Informative<T> {
     let search = World::new(3).begun::<T>();
     let found = search.estimate::<200>().expect("something explains it");

@@ -5,8 +5,8 @@ use heapless::Vec;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// What is known of biases beforehand: times the variance of a range, the inverse of their covariance is
-/// `own` on the diagonal less `shared` everywhere among the anchors.
+/// The prior of the biases: the inverse of their covariance, times the variance of a range, is `own` on the
+/// diagonal minus `shared` everywhere among the anchors.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Prior<T> {
@@ -15,7 +15,7 @@ pub(super) struct Prior<T> {
     pub(super) anchors: usize,
 }
 
-/// One height, and how well it explains the ranges.
+/// A candidate height, and the evidence on how well it explains the ranges.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -27,26 +27,26 @@ pub(super) struct Prior<T> {
 )]
 pub(super) struct Candidate<T, const A: usize> {
     pub(super) height: T,
-    /// Normal equations of the biases, without what they may be, times the variance of a range.
+    /// Normal equations of the biases, without the prior, times the variance of a range.
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays::rows"))]
     normal: [[T; A]; A],
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     right: [T; A],
-    /// Squares that are left without biases, m².
+    /// Sum of squared residuals without biases, m².
     squares: T,
-    /// The last position, m.
+    /// Position at the last place, m.
     pub(super) position: Option<[T; 2]>,
-    /// Sum of the squared distances to the position of the candidate below, m².
+    /// Sum over the places of the squared distance to the position of the candidate below, m².
     pub(super) apart: T,
 }
 
-/// Huber's threshold, and the cost beyond which a residual costs no more: a range off by more than half a metre
-/// says nothing.
+/// Huber's threshold in standard deviations (`DOUBT`), and the largest cost of a residual: a range that is off by
+/// more than half a metre carries no information.
 const DOUBT: f64 = 2.0;
 const LARGEST_COST: f64 = 20.0;
 
 impl<T: Scalar, const A: usize> Candidate<T, A> {
-    /// Before the first place.
+    /// A candidate before the first place.
     pub(super) fn at(height: T) -> Self {
         Self {
             height,
@@ -58,10 +58,10 @@ impl<T: Scalar, const A: usize> Candidate<T, A> {
         }
     }
 
-    /// Takes in the ranges of a place; whether there is a position at this height.
+    /// Adds the ranges of a place. Returns whether there is a position at this height.
     pub(super) fn add(&mut self, heard: &[(usize, Observation<T>)], prior: &Prior<T>) -> bool {
         let before = *self;
-        // Once with the biases as they were known, and once with those as they are known then.
+        // Twice: first with the biases known before, then with those that this place has improved.
         for _ in 0..2 {
             let biases = self.explained(prior).map_or([T::ZERO; A], |(_, biases)| biases);
             let near = self.position;
@@ -69,7 +69,7 @@ impl<T: Scalar, const A: usize> Candidate<T, A> {
             self.position = self.placed(heard, &biases, near);
             let place = self.position.map(SVector::from);
             if !place.is_some_and(|place| self.project(heard, &biases, &place)) {
-                // A height at which there is no position is not made more likely by that.
+                // The lack of a position must not make a height more likely.
                 *self = before;
                 let count = T::from_micro(heard.len().min(2000) as i32 * 1_000_000);
                 self.squares += T::from_f64(LINK_SIGMA * LINK_SIGMA * LARGEST_COST) * count;
@@ -79,7 +79,7 @@ impl<T: Scalar, const A: usize> Candidate<T, A> {
         true
     }
 
-    /// The position that fits best, near the last one if the ranges agree there.
+    /// The best-fitting position, near the last one if the ranges agree there.
     fn placed(
         &self,
         heard: &[(usize, Observation<T>)],
@@ -98,7 +98,7 @@ impl<T: Scalar, const A: usize> Candidate<T, A> {
             let variance = freed.first()?.variance;
             solver.descend::<2>(&freed, &SVector::from(start), variance).ok()
         });
-        // Two standard deviations a range.
+        // Two standard deviations per range.
         let most = T::from_f64(4.0) * T::from_micro(freed.len().min(2000) as i32 * 1_000_000);
         if let Some(near) = near.filter(|near| near.cost <= most) {
             return Some(*near.position.as_array());
@@ -112,8 +112,8 @@ impl<T: Scalar, const A: usize> Candidate<T, A> {
         better.map(|fix| *fix.position.as_array())
     }
 
-    /// Adds what the ranges say beyond the position: N += W, g += W e, c += eᵀ W e with
-    /// W = w − w J (Jᵀ w J)⁻¹ Jᵀ w, Huber's weights w and ranges that are too long by e.
+    /// Adds what the ranges say beyond the position: N += W, g += W e, c += eᵀ W e with W = w − w J (Jᵀ w J)⁻¹ Jᵀ
+    /// w, Huber's weights w and the excesses e of the ranges.
     fn project(
         &mut self,
         heard: &[(usize, Observation<T>)],
@@ -133,7 +133,7 @@ impl<T: Scalar, const A: usize> Candidate<T, A> {
             let mut weight = T::ONE;
             if deviations > threshold {
                 weight = threshold / deviations;
-                // Huber's cost, or the largest, instead of the weighed square that is added below.
+                // Huber's cost, limited to the largest, replaces the weighted square that is added below.
                 let cost = (threshold * (T::TWO * deviations - threshold)).min(largest);
                 self.squares += variance * (cost - threshold * deviations);
             }
@@ -161,7 +161,7 @@ impl<T: Scalar, const A: usize> Candidate<T, A> {
         true
     }
 
-    /// The squares that the best biases leave (m², with those of the biases), and the biases, m.
+    /// The sum of squares with the best biases (m², including their prior), and these biases, m.
     pub(super) fn explained(&self, prior: &Prior<T>) -> Option<(T, [T; A])> {
         let mut normal = self.normal;
         for (index, line) in normal.iter_mut().enumerate() {
@@ -183,7 +183,7 @@ impl<T: Scalar, const A: usize> Candidate<T, A> {
         let matrices = T::all_finite(self.normal.as_flattened()) && T::all_finite(&self.right);
         matrices && T::all_finite(&sums) && self.position.is_none_or(|it| T::all_finite(&it))
     }
-    /// Halves what all places have said.
+    /// Halves the accumulated evidence of all places.
     pub(super) fn fade(&mut self) {
         let entries = self.normal.as_flattened_mut().iter_mut();
         for entry in entries.chain(&mut self.right) {

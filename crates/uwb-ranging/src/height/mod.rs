@@ -9,37 +9,37 @@ use heapless::Vec;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// The height at which a tag moves, as its ranges tell it, and what the anchors measure too long with it.
+/// The estimated height of a tag, and the range biases of the anchors that belong to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Height<T, const A: usize> {
     /// The height in the anchors' frame (z up), m.
     pub metres: T,
-    /// Its standard deviation, m.
+    /// Standard deviation of the height, m.
     pub sigma: T,
-    /// By how much a position in the plane is uncertain because the height is, m: the root mean square
-    /// distance over the places so far, when the biases go with the height.
+    /// Position uncertainty in the plane due to that of the height, m: the root mean square distance over the
+    /// places so far, with the biases varying along with the height.
     pub position_sigma: T,
-    /// What each anchor measures too long at this height, m. Height and biases were found together and are used
-    /// together: a height too high by a metre and ranges too long by half of one look much the same, and lead to
-    /// the same position. Anchors that were calibrated may keep what was measured.
+    /// Bias of each anchor at this height, m. Height and biases were estimated together and are used together: a
+    /// height too high by a metre and ranges too long by half a metre look much the same, and lead to the same
+    /// position. Calibrated anchors may keep their measured biases.
     pub biases: [T; A],
 }
 
-/// Search for the height of a tag that stays at one, from places at which it was heard by at least three
-/// anchors and which need not be known.
+/// Search for the constant height of a tag, from places at which at least three anchors heard it; the places need
+/// not be known.
 ///
-/// The slant of a range makes the height felt: from place to place differently, unlike what an anchor
-/// measures too long. Seventeen candidate heights are carried along. At each place every candidate finds its
-/// own position in the plane, what the ranges say about that is eliminated, and the rest says something about
-/// the biases ([`Calibration`](crate::Calibration) does the same at one height) and about the height: the
-/// squares that the best biases leave. The probability over the candidates gives mean and deviation.
+/// The slant of a range depends on the height, and differently from place to place, unlike an anchor's bias.
+/// Seventeen candidate heights are carried along. At each place every candidate finds its own position in the
+/// plane, the position is eliminated from the equations, and the remainder constrains the biases
+/// ([`Calibration`](crate::Calibration) does the same at one height) and the height, through the sum of squares
+/// with the best biases. The probability over the candidates gives mean and standard deviation.
 ///
-/// Candidates reach from the floor (z = 0, or the lowest anchor) to the highest anchor, or 2 m above the floor
-/// if that is higher: **a tag is not looked for outside**. Anchors at one height cannot tell above from below:
-/// where both explain the ranges, and the anchors' own height does not, **below** is taken.
+/// Candidates range from the floor (z = 0, or the lowest anchor) to the highest anchor, or 2 m above the floor if
+/// that is higher: **heights outside are not considered**. Anchors at one height cannot distinguish above from
+/// below: where both explain the ranges, and the anchors' own height does not, **below** is taken.
 ///
-/// In fixed point, distances of up to 40 m.
+/// In fixed point, distances may be up to 40 m.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HeightSearch<T: Scalar, const A: usize> {
@@ -47,27 +47,28 @@ pub struct HeightSearch<T: Scalar, const A: usize> {
     prior: Prior<T>,
     #[cfg_attr(feature = "serde", serde(with = "kestirim_snapshot::arrays"))]
     candidates: [Candidate<T, A>; CANDIDATES],
-    /// Weight of the places, and of the ranges beyond two a place.
+    /// The number of places (faded ones count less), and the number of ranges beyond two per place.
     places: T,
     spare: T,
 }
 
-/// Candidate heights.
+/// Number of candidate heights.
 const CANDIDATES: usize = 17;
-/// The candidates reach at least so far above the floor, m.
+/// The candidates reach at least this far above the floor, m.
 const LEAST_REACH: f64 = 2.0;
-/// Places beyond which the oldest fade, so that the sums stay small and the anchors may change.
+/// Number of places at which all accumulated sums are halved, so that they stay small and the anchors may change.
 const MOST_PLACES: f64 = 128.0;
-/// The difference of costs that a height of three standard deviations makes.
+/// The difference of costs that corresponds to three standard deviations.
 const CERTAIN: f64 = 9.0;
 
 impl<T: Scalar, const A: usize> HeightSearch<T, A> {
-    /// Begins for anchors at these places (z up, m), whose biases have a common part and one of each anchor's own
-    /// with these standard deviations, m: 0.3 and 0.1 for anchors as they come, 0.05 each for calibrated ones.
+    /// Begins a search for anchors at these positions (z up, m). `common` and `own` are the standard deviations (m)
+    /// of the common part of their biases and of each anchor's own part: 0.3 and 0.1 for uncalibrated anchors, 0.05
+    /// each for calibrated ones.
     ///
     /// # Errors
     /// [`Error::TooFewRanges`] for fewer than three anchors or more than A, [`Error::NotFinite`], or
-    /// [`Error::NotPositive`] for a deviation below a millimetre.
+    /// [`Error::NotPositive`] for a standard deviation below a millimetre.
     pub fn new(anchors: &[SVector<T, 3>], common: T, own: T) -> Result<Self, Error> {
         let anchors = Vec::<_, A>::from_slice(anchors).map_err(|_| Error::TooFewRanges)?;
         if anchors.len() < 3 {
@@ -102,12 +103,12 @@ impl<T: Scalar, const A: usize> HeightSearch<T, A> {
         Ok(Self { anchors, prior, candidates, places: T::ZERO, spare: T::ZERO })
     }
 
-    /// Takes in the ranges (m) of a place: medians while the tag stands, or ranges of one moment. Neighbouring
-    /// places share their errors: let the tag move by half a metre from one to the next.
+    /// Adds the ranges (m) at a place: medians while the tag stands, or simultaneous ranges. Neighbouring places
+    /// share their errors: let the tag move by half a metre from one to the next.
     ///
     /// # Errors
-    /// [`Error::TooFewRanges`] unless three anchors were heard, [`Error::NotFinite`], or why no candidate height
-    /// has a position; nothing is changed.
+    /// [`Error::TooFewRanges`] unless three anchors were heard, [`Error::NotFinite`], or
+    /// [`Error::DegenerateGeometry`] if no candidate height has a position; nothing is changed.
     pub fn add(&mut self, ranges: &[Option<T>; A]) -> Result<(), Error> {
         let variance = T::from_f64(LINK_SIGMA * LINK_SIGMA);
         let mut heard = Vec::<(usize, Observation<T>), A>::new();
@@ -116,7 +117,7 @@ impl<T: Scalar, const A: usize> HeightSearch<T, A> {
             if !range.is_finite() {
                 return Err(Error::NotFinite);
             }
-            // There are no more anchors than places.
+            // There are no more anchors than the capacity.
             let _ = heard.push((index, Observation { anchor, range, variance }));
         }
         let spare = heard.len().checked_sub(3).ok_or(Error::TooFewRanges)? + 1;
@@ -148,15 +149,15 @@ impl<T: Scalar, const A: usize> HeightSearch<T, A> {
         Ok(())
     }
 
-    /// Number of places so far; those that have faded count half.
+    /// Number of places so far; it is halved whenever the accumulated evidence fades.
     pub fn places(&self) -> T {
         self.places
     }
 
-    /// The height, and how certain it is; none before the first place.
+    /// The height and its uncertainty; `None` before the first place.
     ///
-    /// If it matters is said by [`Height::position_sigma`]: among anchors at the tag's own height the height is
-    /// uncertain, and moves no position.
+    /// [`Height::position_sigma`] tells whether the uncertainty matters: among anchors at the tag's own height, the
+    /// height is uncertain but does not affect the position.
     pub fn height(&self) -> Option<Height<T, A>> {
         if self.places <= T::ZERO {
             return None;
@@ -166,7 +167,7 @@ impl<T: Scalar, const A: usize> HeightSearch<T, A> {
             (*cost, *biases) = candidate.explained(&self.prior)?;
         }
         let least = costs.iter().fold(T::MAX, |least, &cost| least.min(cost));
-        // Ranges that agree worse with each other than links do say less; those that agree better, no more.
+        // Ranges that agree worse than the links' noise weigh less; those that agree better do not weigh more.
         let variance = T::from_f64(LINK_SIGMA * LINK_SIGMA).max(least / self.spare.max(T::ONE));
         let inverse = variance.divisor();
         for cost in &mut costs {
@@ -181,7 +182,7 @@ impl<T: Scalar, const A: usize> HeightSearch<T, A> {
         finite.then_some(Height { metres, sigma, position_sigma, biases })
     }
 
-    /// From which candidate to which the height is looked for: on one side of the anchors' mean height if both
+    /// The range of candidates (first, last) that is considered: one side of the anchors' mean height if both sides
     /// explain the ranges and the mean height itself does not.
     fn sides(&self, costs: &[T; CANDIDATES]) -> (usize, usize) {
         let all = (0, CANDIDATES - 1);
@@ -195,14 +196,14 @@ impl<T: Scalar, const A: usize> HeightSearch<T, A> {
         };
         let best = |side: &[T]| side.iter().fold(T::MAX, |least, &cost| least.min(cost));
         let (below, above) = (best(below), best(above));
-        // A standard deviation.
+        // One standard deviation.
         if barrier - below.max(above) <= T::ONE {
             return all;
         }
         if below - above < T::from_f64(CERTAIN) { (0, middle) } else { (middle, CANDIDATES - 1) }
     }
 
-    /// Halves what all places have said.
+    /// Halves the accumulated evidence of all places.
     fn fade(&mut self) {
         self.candidates.iter_mut().for_each(Candidate::fade);
         self.places *= T::HALF;

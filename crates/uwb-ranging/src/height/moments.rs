@@ -2,10 +2,10 @@ use super::CANDIDATES;
 use super::candidate::Candidate;
 use kestirim_scalar::Scalar;
 
-/// Heights between two candidates at which the probability is taken.
+/// Number of heights between two candidates at which the probability is evaluated.
 const BETWEEN: i32 = 8;
 
-/// Mean and deviation of a height, and where that is among the candidates.
+/// Mean and standard deviation of the height, and its place among the candidates.
 pub(super) struct Moments<T> {
     pub(super) metres: T,
     pub(super) sigma: T,
@@ -14,7 +14,7 @@ pub(super) struct Moments<T> {
 }
 
 impl<T: Scalar> Moments<T> {
-    /// Mean and deviation over the candidates of one side.
+    /// Mean and standard deviation over the candidates from `first` to `last`.
     pub(super) fn of<const A: usize>(
         candidates: &[Candidate<T, A>; CANDIDATES],
         places: T,
@@ -23,7 +23,7 @@ impl<T: Scalar> Moments<T> {
     ) -> Option<Self> {
         let places = places.divisor();
         let step = T::from_f64(1.0 / f64::from(BETWEEN));
-        // Weights, and places counted in candidates and in metres of the position's way.
+        // Weights, and weighted moments of the place counted in candidates and in metres of the position's path.
         let (mut sum, mut mean, mut variance) = (T::ZERO, T::ZERO, T::ZERO);
         let (mut way_mean, mut way_variance) = (T::ZERO, T::ZERO);
         let mut way = T::ZERO;
@@ -59,7 +59,7 @@ impl<T: Scalar> Moments<T> {
         })
     }
 
-    /// What the candidates on either side say, in proportion.
+    /// Interpolates values given per candidate at the mean height.
     pub(super) fn at<const A: usize>(&self, of: &[[T; A]; CANDIDATES]) -> Option<[T; A]> {
         let whole = |index: usize| T::from_micro(index as i32 * 1_000_000);
         let index = (0..CANDIDATES - 1).rfind(|&index| whole(index) <= self.place)?;
@@ -73,7 +73,7 @@ impl<T: Scalar> Moments<T> {
     }
 }
 
-/// A cubic through two costs, with the slopes of the parabolas through their neighbours (Catmull and Rom 1974).
+/// A cubic between two costs, with the slopes of the parabolas through their neighbours (Catmull and Rom 1974).
 fn between<T: Scalar>(before: Option<T>, here: T, next: T, after: Option<T>, share: T) -> T {
     let rise = next - here;
     let leaving = before.map_or(rise, |before| (next - before) * T::HALF);

@@ -1,11 +1,11 @@
-//! What is learnt of anchors: biases by level, from known and unknown points, and their places.
+//! Estimates of the anchors: biases by level and from known and unknown points, and positions.
 
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{Calibration, Error, LevelBias, Quartiles, survey};
 use nalgebra::{Vector2, Vector3};
 use proptest::prelude::*;
 
-/// Numbers from −1 to 1 that look random: Marsaglia's xorshift.
+/// Pseudo-random numbers from −1 to 1: Marsaglia's xorshift.
 fn noise(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed | 1;
     move || {
@@ -48,8 +48,8 @@ proptest! {
             quartiles.add(value);
             values.push(value);
         }
-        // Of these values, not of what they are drawn from: no seed draws an unlikely sample.
-        // Over 10⁶ seeds the ranks were 0.45 to 0.55, the deviations 0.46 to 1.00 (true 0.74).
+        // Quantiles of the sample itself, not of the distribution: no seed draws an unlikely sample. Over 10⁶ seeds
+        // the ranks were 0.45 to 0.55, the deviations 0.46 to 1.00 (true 0.74).
         let median = quartiles.median().unwrap();
         let rank = values.iter().filter(|&&value| value < median).count() as f64 / 400.0;
         prop_assert!((0.4..0.6).contains(&rank), "{} has rank {}", median, rank);
@@ -83,7 +83,7 @@ const PLACES: [[f64; 3]; 8] = [
 ];
 const BIASES: [f64; 8] = [0.12, 0.18, 0.05, 0.22, 0.15, 0.10, 0.28, 0.20];
 
-/// The worst error of a bias, m, after so many points, known or not.
+/// The worst error of a bias, m, after a number of points, known or unknown.
 fn calibrated<T: Scalar>(points: u32, known: bool) -> f64 {
     let anchors = PLACES.map(|place| Vector3::from(place.map(T::from_f64)));
     let mut calibration = Calibration::<T, 8>::new(anchors).unwrap();
@@ -135,7 +135,7 @@ fn a_point_that_says_nothing_is_refused() {
     assert_eq!(calibration, start);
 }
 
-/// The worst error of a place, m, in a survey with this noise (m) and these pairs missing.
+/// The worst error of a position, m, in a survey with this noise (m) and these pairs missing.
 fn surveyed<T: Scalar>(seed: u64, sigma: f64, missing: &[(usize, usize)]) -> (f64, bool) {
     let layout = [[0.0, 0.0], [7.0, 0.0], [7.2, 5.0], [0.3, 5.5], [3.0, 6.5], [4.0, -1.0]];
     let heights = [2.0, 2.5, 1.0, 2.2, 2.0, 1.5];

@@ -1,4 +1,4 @@
-//! Messages of two anchors on clocks of their own, in exact arithmetic, against the difference that comes back.
+//! Messages of two anchors on their own clocks, in exact arithmetic, against the computed difference.
 
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 const PLACES: [[f64; 3]; 2] = [[0.0, 0.0, 2.0], [9.0, 3.0, 1.0]];
 const TAG: [f64; 3] = [2.0, 4.0, 1.0];
 
-/// Three clocks: of the tag and of each anchor.
+/// Three clocks: the tag's and each anchor's.
 #[derive(Clone, Copy, Debug)]
 struct Clocks {
     starts: [u64; 3],
@@ -29,7 +29,7 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (Vector3::from(a) - Vector3::from(b)).norm()
 }
 
-/// Message number `k`, one every 5 ms, of the anchors in turn.
+/// Message number `k`, one every 5 ms, sent by the anchors in turn.
 struct Sent {
     message: Broadcast<'static>,
     heard: [Heard; 1],
@@ -80,7 +80,7 @@ fn check<T: Scalar>(clocks: &Clocks, first: u64) -> Result<(), TestCaseError> {
     for k in first..first + 200 {
         let mut sent = sent(clocks, k);
         if k % 2 == 0 {
-            // Those of Crazyflie's third version send 32 bits.
+            // Crazyflie's third version sends timestamps of 32 bits.
             let low = |stamp: Timestamp| Timestamp::new(stamp.ticks() & 0xffff_ffff);
             sent.message.sent = low(sent.message.sent);
             sent.heard[0].received = low(sent.heard[0].received);
@@ -89,7 +89,7 @@ fn check<T: Scalar>(clocks: &Clocks, first: u64) -> Result<(), TestCaseError> {
         made += 1;
         let sign = if found.anchors == [0, 1] { 1.0 } else { -1.0 };
         let error = found.difference.to_f64() - sign * expected;
-        // Whole ticks of 4.7 mm: three of them, and two more over 50 ms at least.
+        // Whole ticks of 4.7 mm: three of them, and at least two more over 50 ms.
         prop_assert!(error.abs() < 0.012, "{error} at {k}");
         prop_assert!((0.019..0.021).contains(&found.variance.to_f64()));
     }
@@ -140,15 +140,15 @@ fn what_is_wrong_is_refused_and_an_anchor_that_begins_anew_is_heard_again() {
     let mut wrong = sent(&clocks, 100);
     wrong.message.anchor = 2;
     assert_eq!(take(&mut engine, &wrong), Err(Error::NoSuchAnchor));
-    // The other was heard 30 m later than it can have been.
+    // The other anchor's message was heard 30 m later than possible.
     let mut wrong = sent(&clocks, 100);
     wrong.heard[0].received = Timestamp::new(wrong.heard[0].received.ticks() + 6400);
     assert_eq!(take(&mut engine, &wrong), Err(Error::ImplausibleDifference));
-    // What it heard was lost: nothing ties its message to another's.
+    // The message that it heard was lost: nothing relates its own message to another's.
     let mut lost = sent(&clocks, 100);
     lost.heard[0].sequence = 90;
     assert_eq!(take(&mut engine, &lost), Ok(None));
-    // Anchor 1 begins anew.
+    // Anchor 1 restarts.
     clocks.starts[2] = 123_456_789_012;
     let (mut refused, mut made) = (0, 0);
     for k in 101..500 {

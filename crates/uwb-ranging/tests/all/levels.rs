@@ -1,4 +1,4 @@
-//! The bias of a range by its level, against recorded exchanges of surveyed distances.
+//! The range bias as a function of the level, against recorded exchanges at surveyed distances.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -38,7 +38,7 @@ fn recorded_distances_depend_less_on_the_distance() {
                 continue;
             };
             let error = range - distance;
-            // What is farther off has another reason.
+            // Larger errors have another cause.
             if fields[0] != place || error.abs() >= 2.0 {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! Trilateration and least squares in every scalar.
+//! Trilateration and least squares in every scalar type.
 
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{
@@ -54,7 +54,7 @@ fn check_exact<T: Scalar>(tag: [f64; 3], tolerance: f64) {
     assert!((fix.position.map(T::to_f64) - Vector3::from(tag)).norm() < 5e-3);
 }
 
-/// What a search comes to that is interrupted after so many steps again and again, and how often it is.
+/// The result of a search that is interrupted after every `steps` steps, and the number of interruptions.
 fn searched<T: Scalar, const D: usize>(
     solver: &Solver<T>,
     observations: &[Observation<T>],
@@ -71,7 +71,7 @@ fn searched<T: Scalar, const D: usize>(
     panic!("it does not end");
 }
 
-/// Ranges that agree, or of which one is `excess` too long.
+/// Consistent ranges, or ranges of which one is too long by `excess`.
 fn check_search<T: Scalar>(tag: [f64; 3], excess: f64) -> Result<(), TestCaseError> {
     let mut ranges = CORNERS.map(|place| distance(place, tag));
     ranges[1] += excess;
@@ -147,7 +147,7 @@ fn the_covariance_is_that_of_the_errors() {
     let mut squares = nalgebra::Matrix2::<f64>::zeros();
     let (mut count, mut covariance) = (0.0, nalgebra::Matrix2::zeros());
     for pattern in 0..16_u32 {
-        // ±σ on every link: the errors' exact second moments, to first order.
+        // ±σ on every link: the exact second moments of the errors, to first order.
         let ranges =
             core::array::from_fn(|i| truth[i] + if pattern >> i & 1 == 0 { 0.1 } else { -0.1 });
         let fix =
@@ -174,7 +174,7 @@ fn a_common_bias_is_found_where_there_are_ranges_enough() {
 
 #[test]
 fn a_wall_tells_a_place_from_its_mirror_image() {
-    // Three anchors along a wall, nearly in a line.
+    // Three nearly collinear anchors along a wall.
     let wall = [[0.0, 0.0, 2.0], [2.0, 0.05, 2.0], [4.0, 0.0, 2.0]];
     let ranges = wall.map(|place| distance(place, [1.0, 3.0, 1.0]));
     let free = Solver::new(1.0_f32);
@@ -222,7 +222,8 @@ fn impossible_questions_have_their_errors() {
     assert_eq!(dilution_of_precision(parallel), Err(Error::DegenerateGeometry));
     let around = [[1.0_f32, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
     assert!((dilution_of_precision(around).unwrap() - 1.0).abs() < 1e-6);
-    // Ranges of a quarter of the weight err twice as much; of no weight, not at all where the others determine.
+    // Ranges with a quarter of the weight have twice the error; ranges without weight have no effect if the others
+    // suffice.
     let weighted = |weights: [f32; 4]| weighted_dilution(around.into_iter().zip(weights));
     assert!((weighted([0.25; 4]).unwrap() - 2.0).abs() < 1e-6);
     assert!((weighted([1.0, 1.0, 0.0, 0.0]).unwrap() - 2.0_f32.sqrt()).abs() < 1e-6);
@@ -243,7 +244,7 @@ fn what_all_ranges_have_in_common_pulls_a_position_that_anchors_are_not_around()
     };
     is(error(around, [1.0; 3], [0.3; 3]), [0.0; 2]);
     is(error(ahead, [2.0; 3], [0.3; 3]), [0.4, 0.0]);
-    // Two without the third, which has no weight, are where both of their ranges fit.
+    // Two ranges, and a third without weight: the position fits both.
     is(error(around, [0.0, 1.0, 1.0], [9.0, 0.3, 0.3]), [-0.6, 0.0]);
     assert_eq!(error([[1.0, 0.0]; 3], [1.0; 3], [0.3; 3]), Err(Error::DegenerateGeometry));
     assert_eq!(position_error([([1.0, 0.0], 1.0, 0.3)]), Err(Error::TooFewRanges));

@@ -1,4 +1,4 @@
-//! Exchanges made from a known distance and two clocks, in exact arithmetic, against what comes back.
+//! Exchanges computed from a known distance and two clocks, in exact arithmetic, against the measured distance.
 
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{
@@ -7,7 +7,7 @@ use kestirim_uwb_ranging::{
 };
 use proptest::prelude::*;
 
-/// A clock that starts anywhere and runs `ppm` fast.
+/// A clock with any start value that runs `ppm` fast.
 #[derive(Clone, Copy, Debug)]
 struct Clock {
     start: u64,
@@ -15,13 +15,13 @@ struct Clock {
 }
 
 impl Clock {
-    /// The reading after a time given in true ticks.
+    /// The reading after a duration given in true ticks.
     fn at(self, time: f64) -> Timestamp {
         Timestamp::new(self.start + (time * (1.0 + self.ppm * 1e-6)).round() as u64)
     }
 }
 
-/// The exchange over a distance (m) with two reply times (ticks), stamped in whole ticks.
+/// The exchange over a distance (m) with two reply times (ticks), timestamped in whole ticks.
 fn exchange(a: Clock, b: Clock, distance: f64, reply1: f64, reply2: f64) -> DoubleSided {
     let flight = distance / METRES_PER_TICK;
     let arrived = 1e6 + flight;
@@ -64,7 +64,7 @@ proptest! {
     ) {
         let e = exchange(a, b, distance, reply1, reply2);
         let exact = exact_asymmetric(&e);
-        // Whole ticks of 4.7 mm, the four of them weighted at most by one half each.
+        // Whole ticks of 4.7 mm; each of the four has a weight of at most one half.
         prop_assert!((exact - distance).abs() < 0.012, "{exact} is not {distance}");
         check(e.asymmetric::<f64>().unwrap(), exact, 2e-7)?;
         check(e.asymmetric::<f32>().unwrap(), exact, 2e-5)?;
@@ -73,7 +73,7 @@ proptest! {
         let single = SingleSided { round: e.round1, reply: e.reply1 };
         let offset = e.clock_offset().unwrap();
         let expected = ((1.0 + a.ppm * 1e-6) / (1.0 + b.ppm * 1e-6) - 1.0) * 1e6;
-        // Two ticks in the exchange's length.
+        // Two ticks over the length of the exchange.
         let resolution = 2e6 / (reply1 + reply2) + 1e-3;
         prop_assert!((offset.ppm::<f64>() - expected).abs() < resolution);
         let [round, reply] = [single.round, single.reply].map(|t| i128::from(t.get()));
@@ -82,7 +82,7 @@ proptest! {
         check(single.distance::<f64>(offset), exact, 2e-7)?;
         check(single.distance::<f32>(offset), exact, 2e-5)?;
         check(single.distance::<Q12_20>(offset), exact, 3e-6)?;
-        // The offset is known to a tick in the exchange's length.
+        // The offset is known to one tick over the length of the exchange.
         prop_assert!((exact - distance).abs() < 0.02, "{exact} is not {distance}");
     }
 

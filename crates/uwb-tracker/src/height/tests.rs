@@ -1,4 +1,4 @@
-//! Moments and places, at their bounds.
+//! Common times and places, at their limits.
 
 use super::*;
 
@@ -8,7 +8,8 @@ fn finder() -> HeightFinder<f64, 4> {
     HeightFinder::uncalibrated(&corners.map(anchor)).expect("four anchors")
 }
 
-/// Hears anchors at times (µs), which measure a range that grows by a metre a second, each from another.
+/// A finder that has heard anchors at these times (µs), with ranges that grow by one metre per second, different for
+/// each.
 fn heard<const K: usize>(heard_us: [(usize, u64); K]) -> HeightFinder<f64, 4> {
     let mut finder = finder();
     for (anchor, time_us) in heard_us {
@@ -22,9 +23,9 @@ fn range(anchor: usize, time_us: u64) -> f64 {
     3.0 + anchor as f64 + 1e-6 * time_us as f64
 }
 
-/// The moment to which all that is heard can be interpolated, and whether its ranges are those of that time, or none.
+/// Checks the time to which the ranges can be interpolated, and which of them are available and right at that time.
 fn is_moment(mut finder: HeightFinder<f64, 4>, now_us: u64, at_us: u64, known: [bool; 4]) {
-    // As if ranges came often: they are fresh for a second.
+    // As if ranges arrived often: they are fresh for a second.
     (finder.moment_us, finder.pace) = (None, Pace::new(4));
     let found = finder.moment(now_us).expect("a moment");
     assert_eq!(finder.moment_us, Some(at_us));
@@ -39,7 +40,7 @@ fn is_moment(mut finder: HeightFinder<f64, 4>, now_us: u64, at_us: u64, known: [
 fn ranges_are_interpolated_to_the_newest_time_that_all_have_passed() {
     let heard_us = [(0, 0), (1, 100_000), (2, 200_000), (0, 400_000), (1, 500_000), (2, 600_000)];
     is_moment(heard(heard_us), 600_000, 400_000, [true, true, true, false]);
-    // An anchor that is not heard any more holds nothing up.
+    // An anchor that is no longer heard does not delay the others.
     is_moment(heard(heard_us), 1_450_000, 500_000, [false, true, true, false]);
 }
 

@@ -1,7 +1,7 @@
-//! Measurement models, a file each: physics, source, Jacobian, and the test that a measurement must pass.
+//! Measurement models, one per file: physics, source, Jacobian, and the gate that a measurement must pass.
 //!
-//! Each is an [`Observation`](kestirim_kalman::Observation) of the tracker's states: D coordinates (m), D
-//! velocities (m/s), perhaps a common bias (m).
+//! Each is an [`Observation`](kestirim_kalman::Observation) of the tracker's states: D coordinates (m), D velocities
+//! (m/s), optionally a common bias (m).
 
 mod proportional_range;
 mod range;
@@ -13,7 +13,7 @@ pub(crate) use range::Range;
 pub(crate) use speed::Speed;
 pub(crate) use standstill::Standstill;
 
-/// Largest NIS of a measurement of the velocity, 3 σ; beyond it the measurement is left out.
+/// NIS of a velocity measurement above which it is rejected: 3 σ.
 const CONTRADICTION: f64 = 9.0;
 
 #[cfg(test)]
@@ -22,7 +22,8 @@ mod tests {
     use kestirim_kalman::{Covariance, Error, Gaussian, Observation};
     use nalgebra::{SVector, vector};
 
-    /// Whether the row of an observation is the slope of what it expects, and the innovation's own of the other sign.
+    /// Checks that the row of an observation is the derivative of its expected value, the negative of that of the
+    /// innovation.
     fn has_the_slope_of_its_row<const N: usize>(
         observation: &impl Observation<f64, N>,
         mean: SVector<f64, N>,
@@ -51,7 +52,7 @@ mod tests {
     #[test]
     fn a_range_is_a_distance_and_a_bias_that_grows_with_it() {
         let anchor = vector![1.0, 2.0, 3.0];
-        // 2 m, 3 m and 6 m away: 7 m.
+        // 2 m, 3 m and 6 m along the axes: 7 m.
         let range = |observes_bias| Range::<f64, 2> {
             measured: 9.0,
             anchor: &anchor,
@@ -65,7 +66,7 @@ mod tests {
         assert!((innovation(&range(true), unbiased) - 2.0).abs() < 1e-12);
         let biased = vector![3.0, 5.0, 0.3, -0.4, 0.8];
         assert!((innovation(&range(true), biased) - (2.0 - 0.8 * 1.125)).abs() < 1e-12);
-        // Of too few anchors it is freed of the bias that is known, of which it tells nothing.
+        // With too few anchors, the known bias is subtracted, but not updated.
         assert_eq!(innovation(&range(false), biased), innovation(&range(true), biased));
         let (of_all, of_few) = (range(true).linearise(&biased), range(false).linearise(&biased));
         let (of_all, of_few) = (of_all.expect("a row").1, of_few.expect("a row").1);
@@ -94,7 +95,7 @@ mod tests {
         let range = ProportionalRange { measured: 9.0, anchor: &anchor, height: 9.0 };
         let mean = vector![3.0, 5.0, 0.8, -0.6, 0.1, 1.0, 0.4, 0.5];
         has_the_slope_of_its_row(&range, mean);
-        // 7 m, 7 % … of half a metre in ten, and 0.4 m.
+        // 7 m, plus 7 times half a metre in ten, and 0.4 m.
         assert!((innovation(&range, mean) - (9.0 - 7.0 - 0.35 - 0.4)).abs() < 1e-12);
     }
 
@@ -117,7 +118,7 @@ mod tests {
         has_the_slope_of_its_row(&speed(0.0), vector![9.0, 9.0, 0.021, 0.0]);
     }
 
-    /// A velocity of this size that is known so well.
+    /// A velocity of this magnitude with this standard deviation.
     fn moving(speed: f64, sigma: f64) -> Gaussian<f64, 4> {
         let (position, velocity) = (1.0, sigma * sigma);
         let variances = [position, position, velocity, velocity];
@@ -126,7 +127,7 @@ mod tests {
 
     #[test]
     fn a_speed_within_three_deviations_is_taken_in() {
-        // 0.1 m/s of the wheels and as much of the estimate: three deviations are 0.424 m/s.
+        // 0.1 m/s for the wheels and as much for the estimate: three standard deviations are 0.424 m/s.
         for (measured, taken) in [(1.42, true), (1.43, false), (0.58, true), (0.57, false)] {
             let mut estimate = moving(1.0, 0.1);
             Speed::<f64, 2> { measured }.correct(&mut estimate).expect("a speed");
@@ -157,7 +158,7 @@ mod tests {
 
     #[test]
     fn a_standstill_agrees_with_velocities_within_three_deviations() {
-        // 0.02 m/s of the estimate and 0.015 m/s of the standstill: three deviations are 0.075 m/s.
+        // 0.02 m/s for the estimate and 0.015 m/s for the standstill: three standard deviations are 0.075 m/s.
         for (speed, agrees) in [(0.0749, true), (0.0751, false), (-0.0749, true), (-0.0751, false)]
         {
             let estimate = moving(speed, 0.02);

@@ -4,20 +4,20 @@ use kestirim_scalar::{Components, Scalar};
 use kestirim_uwb_ranging::{ExpectedRange, expected_range};
 use nalgebra::SVector;
 
-/// A range to an anchor with an excess that grows with the distance, of a robot on wheels.
+/// A range to an anchor with an excess proportional to the distance, for a robot on wheels.
 ///
-/// Physics: h(x) = |p − a| (1 + e/10 m) + b, with the tag's position p, the anchor's place a, the excess e of a range of
-/// 10 m, and the common bias b. Radios' clocks and thresholds, and the level of what they receive, make ranges too long
-/// in proportion: by 7 % at one of the recorded radios.
+/// Physics: h(x) = |p − a| (1 + e/10 m) + b, with the tag's position p, the anchor's position a, the excess e of a
+/// range of 10 m, and the common bias b. Radio clocks and thresholds, and the receive level, make ranges too long in
+/// proportion to the distance: by 7 % for one of the recorded radios.
 ///
-/// Jacobian: ∂h/∂p = (1 + e/10 m) (p − a)/|p − a|, ∂h/∂b = 1, ∂h/∂e = |p − a|/10 m, nothing else.
+/// Jacobian: ∂h/∂p = (1 + e/10 m) (p − a)/|p − a|, ∂h/∂b = 1, ∂h/∂e = |p − a|/10 m, zero otherwise.
 ///
-/// Source: the scale of measured ranges in Djugash and Singh, *A robust method of localization and mapping using
-/// only range* (2008), beside the common bias of [`super::Range`].
+/// Source: the scale of measured ranges in Djugash and Singh, *A robust method of localization and mapping using only
+/// range* (2008), in addition to the common bias of [`super::Range`].
 pub(crate) struct ProportionalRange<'a, T: Scalar> {
-    /// The measured distance, freed of the anchor's own bias, m.
+    /// The measured distance without the anchor's own bias, m.
     pub(crate) measured: T,
-    /// The anchor's place in the room's axes, m.
+    /// The anchor's position in the room frame, m.
     pub(crate) anchor: &'a SVector<T, 3>,
     /// The tag's height, m.
     pub(crate) height: T,

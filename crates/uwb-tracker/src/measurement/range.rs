@@ -3,32 +3,32 @@ use kestirim_scalar::{Components, Scalar};
 use kestirim_uwb_ranging::{ExpectedRange, expected_range};
 use nalgebra::SVector;
 
-/// A range to an anchor: the slant distance and what all ranges are too long by.
+/// A range to an anchor: the slant distance plus the bias common to all ranges.
 ///
-/// Physics: h(x) = |p − a| + (c + s |p − a|) b, with the tag's position p, the anchor's place a and the common bias b. In an
-/// office c is 1 and s is 0; among anchors far apart ranges' excess grows with the distance, and b is that of a range as long as
-/// from the anchors' centre to them.
+/// Physics: h(x) = |p − a| + (c + s |p − a|) b, with the tag's position p, the anchor's position a and the common bias
+/// b. In an office c is 1 and s is 0; among anchors far apart the excess of ranges grows with the distance, and b is
+/// that of a range whose length is the distance from the anchors' centre to them.
 ///
-/// Jacobian: ∂h/∂p = (p − a)/|p − a|, ∂h/∂b = c + s |p − a|, nothing else: s b is a few hundredths of the former. Where too few
-/// anchors are heard to tell b from a distance, ∂h/∂b is taken as zero: b is what it was before, but for what its covariance with
-/// the position makes of a correction.
+/// Jacobian: ∂h/∂p = (p − a)/|p − a|, ∂h/∂b = c + s |p − a|, zero otherwise: the neglected s b is a few hundredths of
+/// ∂h/∂p. Where too few anchors are heard to distinguish b from a distance, ∂h/∂b is taken as zero: b then changes
+/// only through its covariance with the position.
 ///
 /// Source: the paper's eq. 10; the common bias as the clock bias of a GNSS receiver's pseudorange (Kaplan and
 /// Hegarty 2017, 2.5.2).
 pub(crate) struct Range<'a, T: Scalar, const D: usize> {
-    /// The measured distance, freed of the anchor's own bias, m.
+    /// The measured distance without the anchor's own bias, m.
     pub(crate) measured: T,
-    /// The anchor's place in the room's axes, m.
+    /// The anchor's position in the room frame, m.
     pub(crate) anchor: &'a SVector<T, 3>,
-    /// The tag's height in two dimensions, m.
+    /// The tag's height, m, for a position in two dimensions.
     pub(crate) height: T,
-    /// Whether enough anchors are heard to tell a common bias from a distance.
+    /// Whether enough anchors are heard to distinguish a common bias from a distance.
     pub(crate) observes_bias: bool,
-    /// c and s.
+    /// The constants c and s.
     pub(crate) bias_shape: [T; 2],
 }
 
-/// ∂h/∂x of a [`Range`]: D directions, and the common bias where it is a state.
+/// ∂h/∂x of a [`Range`]: D direction components, and the common bias where it is a state.
 pub(crate) struct RangeRow<T, const D: usize, const N: usize>([(usize, T); 4]);
 
 impl<T, const D: usize, const N: usize> AsRef<[(usize, T)]> for RangeRow<T, D, N> {

@@ -3,26 +3,25 @@ use kestirim_kalman::{Error, Gaussian, Observation, SparseRow};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// Speed of the wheels: the size of the velocity, along itself.
+/// Speed of the wheels: the magnitude of the velocity, measured along its direction.
 ///
-/// Physics: h(x) = |v|. A robot on wheels drives straight on; forwards and backwards are the same.
+/// Physics: h(x) = |v|. A robot on wheels drives straight; forwards and backwards are equivalent.
 ///
-/// Jacobian: ∂h/∂v = v/|v|, nothing else. Where the direction in which the robot drives is not known, there
-/// is none.
+/// Jacobian: ∂h/∂v = v/|v|, zero otherwise. While the driving direction of the robot is unknown, there is none.
 ///
-/// Source: wheel odometry (Siegwart, Nourbakhsh and Scaramuzza 2011, 5.2.4), of which the turn is left out.
+/// Source: wheel odometry (Siegwart, Nourbakhsh and Scaramuzza 2011, 5.2.4), without the turn.
 pub(crate) struct Speed<T, const D: usize> {
     /// The mean speed of the wheels, m/s.
     pub(crate) measured: T,
 }
 
 impl<T: Scalar, const D: usize> Speed<T, D> {
-    /// Standard deviation of the speed, m/s: the wheels slip, and the tag is not between them.
+    /// Standard deviation of the speed, m/s: the wheels slip, and the tag is not midway between them.
     const SIGMA: f64 = 0.1;
-    /// Least velocity that has a direction, m/s.
+    /// Smallest velocity whose direction is meaningful, m/s.
     const LEAST: f64 = 0.02;
 
-    /// Takes it in, unless the velocity has no direction yet or contradicts it.
+    /// Updates the estimate, unless its velocity has no direction yet or contradicts the measurement.
     #[inline]
     pub(crate) fn correct<const N: usize>(
         &self,

@@ -3,25 +3,25 @@ use kestirim_kalman::{Error, Gaussian, Observation, SparseRow};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// Standing still: one component of the velocity is measured to be zero.
+/// A standstill: one component of the velocity is measured as zero.
 ///
 /// Physics: h(x) = vᵢ, z = 0.
 ///
-/// Jacobian: ∂h/∂vᵢ = 1, nothing else.
+/// Jacobian: ∂h/∂vᵢ = 1, zero otherwise.
 ///
 /// Source: the zero-velocity update of inertial navigation (Groves 2013, 15.3).
 pub(crate) struct Standstill {
-    /// The index of vᵢ among the states.
+    /// Index of vᵢ among the states.
     index: usize,
 }
 
 impl Standstill {
-    /// Standard deviation of the velocity of a standing tag, m/s.
+    /// Standard deviation of the velocity of a stationary tag, m/s.
     const SIGMA: f64 = 0.015;
-    /// A velocity that errors of ranges to a standing tag do not make, m/s.
+    /// Velocity that range errors of a stationary tag cannot cause, m/s.
     const FAST: f64 = 0.3;
 
-    /// Takes in that all D components of the velocity are zero.
+    /// Updates the estimate with all D components of the velocity being zero.
     #[inline]
     pub(crate) fn correct<T: Scalar, const D: usize, const N: usize>(
         estimate: &mut Gaussian<T, N>,
@@ -32,7 +32,7 @@ impl Standstill {
         Ok(())
     }
 
-    /// Whether the velocity may be zero: no component is beyond 3 σ.
+    /// Whether the velocity is consistent with zero: no component exceeds 3 σ.
     #[inline]
     pub(crate) fn agrees<T: Scalar, const D: usize, const N: usize>(
         estimate: &Gaussian<T, N>,
@@ -40,7 +40,7 @@ impl Standstill {
         Self::is_within::<T, D, N>(estimate, T::ZERO)
     }
 
-    /// Whether the velocity is surely not zero: a component is beyond 3 σ, and fast.
+    /// Whether the velocity is certainly not zero: a component exceeds both 3 σ and `FAST`.
     #[inline]
     pub(crate) fn is_refuted<T: Scalar, const D: usize, const N: usize>(
         estimate: &Gaussian<T, N>,
@@ -48,7 +48,7 @@ impl Standstill {
         !Self::is_within::<T, D, N>(estimate, T::from_f64(Self::FAST * Self::FAST))
     }
 
-    /// Whether the square of no component is beyond 3 σ and this, (m/s)².
+    /// Whether no component's square exceeds both that of 3 σ and `least`, (m/s)².
     #[inline]
     fn is_within<T: Scalar, const D: usize, const N: usize>(
         estimate: &Gaussian<T, N>,

@@ -1,4 +1,4 @@
-//! A first position, beside the least squares that it comes from.
+//! The first position, compared with the least squares on which it is based.
 
 use super::*;
 use crate::Anchor;
@@ -10,7 +10,7 @@ const NOW_US: u64 = 20_000_000;
 const FRESH_US: u64 = 8_000_000;
 const SOON: u32 = 20;
 
-/// Links in the corners, heard so long ago (µs), with ranges that are so much too long (m).
+/// Links in the corners, heard this long ago (µs), with ranges that are too long by `excess` (m).
 fn links<const A: usize>(
     config: &Config<f64>,
     ages_us: [u64; A],
@@ -24,7 +24,7 @@ fn links<const A: usize>(
     })
 }
 
-/// The same as observations, with these standard deviations of what the tag may have moved.
+/// The ranges of [`links`] as observations, with these standard deviations of the tag's motion (m).
 fn observations<const A: usize>(moved: [f64; A], excess: [f64; A]) -> [Observation<f64>; A] {
     core::array::from_fn(|index| {
         let anchor = SVector::from(CORNERS[index]);
@@ -33,7 +33,7 @@ fn observations<const A: usize>(moved: [f64; A], excess: [f64; A]) -> [Observati
     })
 }
 
-/// The estimate that begins within so many ranges, if all say the same, and how many it takes.
+/// The estimate that is found within `ranges` identical rounds, and the number it takes.
 fn begun_after<const D: usize, const N: usize, const A: usize>(
     config: &Config<f64>,
     links: &[Link<f64>; A],
@@ -47,7 +47,7 @@ fn begun_after<const D: usize, const N: usize, const A: usize>(
     })
 }
 
-/// Soon: before what contradicts itself is accepted.
+/// The estimate found soon: before contradictory ranges are accepted.
 fn begun<const N: usize, const A: usize>(
     config: &Config<f64>,
     links: &[Link<f64>; A],
@@ -59,7 +59,7 @@ fn begun<const N: usize, const A: usize>(
 fn a_start_is_the_fix_and_what_biases_and_rounding_add() {
     let config = Config::calibrated(1.0);
     let excess = [0.1, -0.05, 0.08, 0.02];
-    // What was heard a second ago may be half a metre off, and never more than a metre.
+    // A range heard a second ago may be off by half a metre, and never by more than a metre.
     let (ages_us, moved) = ([0, 1_000_000, 2_000_000, 8_000_000], [0.0, 0.5, 1.0, 1.0]);
     let found = begun::<4, 4>(&config, &links(&config, ages_us, excess)).expect("a start");
     let solver = Solver { huber: config.huber, ..Solver::new(1.0) };
@@ -86,7 +86,7 @@ fn a_common_bias_begins_as_the_fix_knows_it() {
     assert!((found.mean[4] - fix.common_bias).abs() < 1e-9);
     let variance = found.covariance.variances()[4];
     assert!((variance - fix.common_bias_variance).abs() < 1e-9, "{variance}, {fix:?}");
-    // Three ranges do not tell it: it is what it was before.
+    // Three ranges do not determine it: its prior is unchanged.
     let found = begun::<5, 3>(&config, &links(&config, [0; 3], [0.0; 3])).expect("a start");
     assert!((found.covariance.variances()[4] - 0.3 * 0.3).abs() < 1e-9);
     assert_eq!(found.mean[4], 0.0);
@@ -119,14 +119,14 @@ fn ranges_that_contradict_each_other_are_taken_in_the_end() {
 #[test]
 fn an_attempt_belongs_to_the_ranges_that_it_began_with() {
     let config = Config::calibrated(1.0);
-    // They do not agree, which takes a while to find out.
+    // They are contradictory, which takes a while to find out.
     let before = links::<5>(&config, [0; 5], [0.0, 3.0, 0.0, 0.0, 0.0]);
     let mut start = Start::<f64, 2, 5>::new();
     let mut go_on = |links: &[Link<f64>; 5], time_us| {
         start.go_on::<4>(&config, links, (time_us, FRESH_US), 1, true)
     };
     assert!(go_on(&before, NOW_US).is_none());
-    // What was measured later is of another place.
+    // Later measurements are from another place.
     let mut after = before;
     for link in &mut after {
         link.hear(NOW_US + 1, 4.0);
@@ -148,7 +148,7 @@ fn an_attempt_of_ranges_that_are_old_by_now_is_given_up() {
     let later_us = NOW_US + FRESH_US + 1;
     assert!(start.go_on::<4>(&config, &before, (later_us, FRESH_US), 1, true).is_none());
     assert!(!start.is_on(), "none is fresh");
-    // Others are begun with.
+    // Other ranges start an attempt.
     let mut fresh = links::<5>(&config, [0; 5], [0.0; 5]);
     for link in &mut fresh {
         let (range, _) = link.fresh(NOW_US, 0).expect("a range");
@@ -169,10 +169,10 @@ fn the_one_that_is_too_long_is_left_out() {
         let off = (found.mean[0] - TAG[0]).hypot(found.mean[1] - TAG[1]);
         assert!(off < 1e-3, "{blocked}: {off} m");
     }
-    // Of four, three are left: one to spare.
+    // Of four, three remain: one more than the unknowns.
     let four = links::<4>(&config, [0; 4], [0.0, 3.0, 0.0, 0.0]);
     assert!(begun::<4, 4>(&config, &four).is_some());
-    // What is too short is in nobody's way, and what is left must have a range to spare.
+    // Nothing can make a range too short, and the remaining ranges must be redundant.
     let short = links::<5>(&config, [0; 5], [-3.0, 0.0, 0.0, 0.0, 0.0]);
     assert!(begun::<4, 5>(&config, &short).is_none());
     let three = links::<3>(&config, [0; 3], [0.0; 3]);
@@ -211,7 +211,7 @@ fn a_start_in_space_has_the_same_states() {
     assert!((found.mean[6] - fix.common_bias).abs() < 1e-9, "{fix:?} {}", found.mean);
     let known = if fix.common_bias_variance > 0.0 { fix.common_bias_variance } else { 0.09 };
     assert!((p[(6, 6)] - known).abs() < 1e-9, "{fix:?} {p}");
-    // Without the fifth, a sixth state is the last.
+    // Without the fifth, the sixth state is the last.
     assert!(begun_after::<3, 6, 5>(&config, &links, SOON).is_some());
 }
 
@@ -227,7 +227,7 @@ fn in_space_one_range_to_spare_is_left_of_five() {
     assert!(begun_after::<3, 6, 4>(&config, &four, SOON).is_none());
 }
 
-/// Numbers at random, from 0 to 1 (xorshift).
+/// Pseudo-random numbers from 0 to 1 (xorshift).
 struct Random(u64);
 
 impl Random {
@@ -239,8 +239,8 @@ impl Random {
     }
 }
 
-/// Starts in rooms at random, where up to one range is too long by up to 5 m: how many ranges they take on average, and at most,
-/// and the share of them within 30 cm.
+/// Starts in random rooms, where up to one range is too long by up to 5 m: the mean and the largest number of ranges
+/// they take, and the share of them within 30 cm.
 fn in_rooms<const A: usize>(is_blocked: bool) -> (f64, u32, f64) {
     const ROOMS: u32 = 1000;
     let (config, mut random) = (Config::calibrated(1.0), Random(88_172_645_463_325_252));

@@ -12,10 +12,10 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         self.health_beside(Common { sigma, shape: self.bias_shape }, time_us)
     }
 
-    /// Standard deviation of the common bias where it is one of the states, but not learnt, as too few anchors are heard, m.
+    /// Standard deviation of the common bias where it is a state, but not updated, as too few anchors are heard, m.
     ///
-    /// What was learnt, of four anchors or more, has the mean of their own constant errors in it: half of one's or less. It is no
-    /// less certain than beforehand, even if the whole estimate was widened since.
+    /// A value learnt from four anchors or more includes the mean of their own constant errors: half of one's or less.
+    /// It is no less certain than the prior, even if the whole estimate was widened since.
     fn considered_bias(&self) -> Option<T> {
         let estimate = self.estimate().filter(|_| N > 2 * D && !self.means()[0])?;
         let learnt = estimate.covariance.get(2 * D, 2 * D)?.sqrt();
@@ -23,7 +23,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         Some(learnt.hypot(bias_sigma * T::HALF).min(common_bias_sigma))
     }
 
-    /// Health at `time_us` where this common bias is considered.
+    /// Health at `time_us` if this common bias is considered.
     pub(crate) fn health_beside(&self, common: Common<T>, time_us: u64) -> Health<T> {
         let place = self.estimate().and_then(|estimate| {
             let variances = estimate.covariance.variances();

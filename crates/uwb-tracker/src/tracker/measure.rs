@@ -1,4 +1,4 @@
-//! Updates of the estimate by ranges.
+//! Updates of the estimate with ranges.
 
 use super::{Place, Tracker};
 use crate::measurement::Range;
@@ -9,8 +9,8 @@ use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
-    /// Takes in a range at the estimate's own time: whether the common bias is observed, and whether there are more ranges than
-    /// unknowns.
+    /// Updates the estimate with a range at the estimate's own time. The flags tell whether the common bias is
+    /// observed, and whether there are more ranges than unknowns.
     #[inline(always)]
     pub(crate) fn measure(
         &mut self,
@@ -48,8 +48,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         Ok(Report { outcome, innovation: Some(seen) })
     }
 
-    /// Forgets the other place if a range of the anchor at `place` that left this innovation (m, with its variance) does not
-    /// fit it, or if enough anchors are heard and both places are one.
+    /// Discards the mirror image if a range of the anchor at `place` with this innovation (m) and variance does not
+    /// fit it, or if enough anchors are heard and both positions coincide.
     #[inline(never)] // Rare.
     fn tell_apart(&mut self, place: &SVector<T, 3>, seen: (T, T)) {
         let (Some(across), Place::Known(estimate)) = (self.across(), &self.place) else { return };
@@ -62,14 +62,14 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         }
     }
 
-    /// Counts a range that was left out; when half of them are, the position is given up.
+    /// Counts a rejected range, and gives the position up if too many were rejected lately.
     pub(super) fn reject(&mut self, is_blocked: bool) {
         if self.counters.reject(self.heard.max(D as u8), is_blocked) {
             self.give_up();
         }
     }
 
-    /// Keeps a range for a first position, and makes one if it can.
+    /// Stores a range for a first position, and determines one if possible.
     #[inline(never)] // Rare, and large.
     pub(crate) fn collect(&mut self, sample: &RangeSample<T>, range: T) -> Report<T> {
         let mut again = false;
@@ -81,7 +81,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         let now_us = self.time_us;
         let started = self.begin(now_us, again);
         if started {
-            // Its ranges were of a moment before. What cannot be moved on now is with the next sample.
+            // It applies to a slightly earlier time. If it cannot be predicted now, it is with the next sample.
             let _ = self.advance(now_us, None);
         }
         let started = started && self.estimate().is_some();
@@ -89,8 +89,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         Report { outcome, innovation: None }
     }
 
-    /// Looks for the position that the fresh ranges make, if they are enough: when all anchors have been heard, or
-    /// one of them `again` after another, before the others.
+    /// Searches for the position from the fresh ranges, if they suffice: when all anchors have been heard, or one of
+    /// them `again` after another one, before the others.
     pub(super) fn begin(&mut self, now_us: u64, again: bool) -> bool {
         let heard = self.count_heard(now_us);
         let may = again || usize::from(heard) >= self.links.len();
@@ -99,7 +99,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         let Some(begun) = start.go_on(&self.config, &self.links, now, leisure, may) else {
             return false;
         };
-        // It is of the time of its ranges.
+        // It applies to the time of its ranges.
         (self.place, self.time_us) = (Place::Known(begun.estimate), begun.time_us);
         for link in &mut self.links {
             *link = link.begun(&self.config);

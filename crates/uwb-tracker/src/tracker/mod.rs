@@ -16,19 +16,18 @@ use kestirim_kalman::Gaussian;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// A tag in the plane at a known height, with the anchors' common bias among the five states.
+/// Tracker of a tag in the plane at a known height, with the anchors' common bias among the five states.
 pub type PlaneTracker<T, const A: usize> = Tracker<T, 2, 5, A>;
-/// A tag in the plane at a known height, for calibrated anchors: four states.
+/// Tracker of a tag in the plane at a known height, for calibrated anchors: four states.
 pub type CalibratedPlaneTracker<T, const A: usize> = Tracker<T, 2, 4, A>;
-/// A tag in space, with the anchors' common bias among the seven states.
+/// Tracker of a tag in space, with the anchors' common bias among the seven states.
 pub type SpaceTracker<T, const A: usize> = Tracker<T, 3, 7, A>;
-/// A tag in space, for calibrated anchors: six states.
+/// Tracker of a tag in space, for calibrated anchors: six states.
 pub type CalibratedSpaceTracker<T, const A: usize> = Tracker<T, 3, 6, A>;
 
-/// Position, velocity and perhaps common bias of a tag, from single ranges of up to A anchors.
+/// Tracks position, velocity and optionally the common range bias of a tag, from single ranges of up to A anchors.
 ///
-/// The states are D coordinates (m), their velocities (m/s) and, if N = 2 D + 1, what all ranges are too
-/// long by (m).
+/// The states are D coordinates (m), their velocities (m/s) and, if N = 2 D + 1, the bias common to all ranges (m).
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
@@ -39,24 +38,24 @@ pub struct Tracker<T: Scalar, const D: usize, const N: usize, const A: usize> {
     pub(crate) time_us: u64,
     stillness: Stillness<T>,
     wheels: Option<OdometrySample<T>>,
-    /// Time until which standstills are not taken in, µs.
+    /// Time until which standstills are ignored, µs.
     doubted_until_us: u64,
-    /// Whether IMU or wheels say that it stands at the estimate's time.
+    /// Whether the IMU or the wheels indicate a standstill at the estimate's time.
     stands: bool,
     pub(crate) heard: u8,
     pub(crate) pace: Pace,
-    /// The tag may be behind it as well.
+    /// Anchors behind whose line or plane the tag may be as well.
     mirror: Option<Mirror<D>>,
-    /// Behind this it always may, as all anchors are in one line, or plane.
+    /// Anchors behind whose line or plane the tag may always be, as all anchors lie in it.
     pub(crate) flat: Option<Mirror<D>>,
     /// Standard deviation beyond which a position is given up, m.
     lost_sigma: T,
-    /// How the common bias depends on the distance: a constant, and a slope, 1/m.
+    /// Dependence of the common bias on the distance: a constant, and a slope, 1/m.
     pub(crate) bias_shape: [T; 2],
     counters: Counters<T>,
 }
 
-/// The estimate, or the search for one: there are never both, and they have the same room.
+/// The estimate, or the search for one: never both, so that they share memory.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -71,22 +70,22 @@ pub(crate) enum Place<T: Scalar, const D: usize, const N: usize, const A: usize>
     Sought(Start<T, D, A>),
 }
 
-/// Standard deviation beyond which a position is given up among anchors of an office, m; in proportion where they
-/// are farther apart.
+/// Standard deviation beyond which a position is given up among the anchors of an office, m; scaled where they are
+/// farther apart.
 pub(crate) const LOST_SIGMA: f64 = 2.0;
 /// Time without a sample after which a position is given up (µs).
 pub(crate) const LOST_US: u64 = 60_000_000;
-/// A sample may be so much older than the estimate (µs): the IMU's samples come at once, ranges
-/// after an exchange of messages.
+/// Largest age of a sample relative to the estimate, µs: the IMU's samples arrive at once, ranges after an exchange of
+/// messages.
 pub(crate) const LATE_US: u64 = 100_000;
-/// Largest plausible acceleration of what carries a tag, m/s².
+/// Largest plausible acceleration of the carrier of a tag, m/s².
 const LARGEST_ACCELERATION: f64 = 500.0;
 
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
-    /// Between ranges, the estimate follows the IMU in steps of this (µs).
+    /// Interval at which the estimate follows the IMU between ranges, µs.
     const INERTIAL_STEP_US: u64 = 100_000;
 
-    /// A tracker for these anchors, before its first position.
+    /// Creates a tracker for these anchors, before its first position.
     ///
     /// # Errors
     /// [`Error::TooManyAnchors`] or [`Error::NotFinite`].
@@ -120,43 +119,44 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         })
     }
 
-    /// Position of the tag, m; none before the first one, or when it is lost.
+    /// Position of the tag, m; `None` before the first one, or when it is lost.
     #[inline]
     pub fn position(&self) -> Option<SVector<T, D>> {
         let estimate = self.estimate()?;
         Some(SVector::from_fn(|axis, _| estimate.mean.as_array()[axis]))
     }
 
-    /// Velocity of the tag, m/s.
+    /// Velocity of the tag, m/s; `None` without a position.
     #[inline]
     pub fn velocity(&self) -> Option<SVector<T, D>> {
         let estimate = self.estimate()?;
         Some(SVector::from_fn(|axis, _| estimate.mean.as_array()[D + axis]))
     }
 
-    /// The other place that the ranges allow, m; none if they allow one only, as they mostly do.
+    /// The other position that the ranges allow, m; `None` if they allow only one, as usual.
     ///
-    /// Two anchors in the plane, or three in space, see what is in front of their line, or plane, and what is behind it
-    /// alike. A tag that came near it while no other anchor was heard may have crossed it or turned back: the position is
-    /// one of the two until the range of another anchor tells, or the room does. If all anchors that there are stand in one line,
-    /// or hang in one plane, to a decimetre, only [`Config::room`] can tell, and without one there are two places throughout.
+    /// Two anchors in the plane, or three in space, cannot distinguish the two sides of their line or plane. A tag
+    /// that came near it while no other anchor was heard may have crossed it or turned back: the position is one of
+    /// the two until the range of another anchor, or the room, decides. If all existing anchors are collinear or
+    /// coplanar to within a decimetre, only [`Config::room`] can decide, and without it there are always two
+    /// positions.
     pub fn mirror_image(&self) -> Option<SVector<T, D>> {
         Some(self.position()? - self.across_in_room()?)
     }
 
-    /// From there to the position, m.
+    /// Vector from the mirror image to the position, m; `None` without a mirror image inside the room.
     pub(crate) fn across_in_room(&self) -> Option<SVector<T, D>> {
         let across = self.across()?;
         let (other, margin) = (self.position()? - across, T::from_f64(mirror::ROOM_MARGIN));
         self.config.room.is_none_or(|room| room.contains(&other, margin)).then_some(across)
     }
 
-    /// The same, whatever the room says.
+    /// Vector from the mirror image to the position, m, regardless of the room.
     pub(crate) fn across(&self) -> Option<SVector<T, D>> {
         mirror::across(self.mirror.as_ref()?, &self.links, &self.position()?)
     }
 
-    /// Mean and covariance of all states.
+    /// Mean and covariance of all states; `None` without a position.
     #[inline]
     pub fn estimate(&self) -> Option<&Gaussian<T, N>> {
         match &self.place {
@@ -165,12 +165,12 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         }
     }
 
-    /// The standard deviation that is attributed to an anchor's ranges at present, m.
+    /// The standard deviation presently attributed to an anchor's ranges, m; `None` if there is no such anchor.
     pub fn range_sigma(&self, anchor: usize) -> Option<T> {
         self.links.get(anchor).map(|link| link.noise.variance().sqrt())
     }
 
-    /// Sets the tag's height in two dimensions, m.
+    /// Sets the height of the tag, m, for a position in two dimensions.
     ///
     /// # Errors
     /// [`Error::NotFinite`].
@@ -182,10 +182,10 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         Ok(())
     }
 
-    /// Takes in a range.
+    /// Processes a range.
     ///
     /// # Errors
-    /// Any [`Error`] but `TooManyAnchors`; the tracker is as it was.
+    /// Any [`Error`] but `TooManyAnchors`; the tracker is unchanged.
     #[inline]
     pub fn range(&mut self, sample: &RangeSample<T>) -> Result<Report<T>, Error> {
         let range = self.links.get(sample.anchor).ok_or(Error::NoSuchAnchor)?.admit(sample)?;
@@ -205,11 +205,11 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         report
     }
 
-    /// Takes in a sample of the IMU.
+    /// Processes a sample of the IMU.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::ImplausibleMotion`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the
-    /// tracker is as it was.
+    /// [`Error::NotFinite`], [`Error::ImplausibleMotion`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the tracker
+    /// is unchanged.
     #[inline]
     pub fn inertial(&mut self, sample: &InertialSample<T, D>) -> Result<(), Error> {
         let numbers = sample.acceleration.iter().chain(sample.push.iter().flatten());
@@ -235,11 +235,11 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         Ok(())
     }
 
-    /// Takes in a sample of the wheels.
+    /// Processes a sample of the wheels.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::ImplausibleMotion`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the
-    /// tracker is as it was.
+    /// [`Error::NotFinite`], [`Error::ImplausibleMotion`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the tracker
+    /// is unchanged.
     #[inline]
     pub fn odometry(&mut self, sample: &OdometrySample<T>) -> Result<(), Error> {
         plausible_wheels(sample)?;
@@ -248,13 +248,13 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         Ok(())
     }
 
-    /// Gives the position up: another one is looked for.
+    /// Gives the position up, and starts to search for another one.
     pub(crate) fn give_up(&mut self) {
         self.place = Place::Sought(Start::new());
         self.mirror = None;
     }
 
-    /// Whether a search for a position has begun.
+    /// Whether a search for a position is in progress.
     pub(crate) fn is_begun(&self) -> bool {
         matches!(&self.place, Place::Sought(start) if start.is_on())
     }
@@ -265,7 +265,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         matches!(self.place, Place::Known(_))
     }
 
-    /// Whether enough anchors are heard to tell a common bias from a distance, and whether there are more than unknowns.
+    /// Whether enough anchors are heard to distinguish a common bias from a distance, and whether there are more
+    /// ranges than unknowns.
     #[inline(always)]
     fn means(&self) -> [bool; 2] {
         [self.heard as usize >= D + 2, self.heard as usize > D]
@@ -278,14 +279,14 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     }
 }
 
-/// Refuses what no wheels do.
+/// Checks that the odometry is plausible.
 #[inline]
 pub(crate) fn plausible_wheels<T: Scalar>(sample: &OdometrySample<T>) -> Result<(), Error> {
     plausible(sample.speed, LARGEST_SPEED)?;
     plausible(sample.turn_rate, LARGEST_SPEED)
 }
 
-/// Refuses what is not finite or too large.
+/// Checks that a number is finite and not too large.
 #[inline]
 fn plausible<T: Scalar>(number: T, largest: f64) -> Result<(), Error> {
     if number.abs() <= T::from_f64(largest) {

@@ -1,4 +1,4 @@
-//! Time of the estimate, and standstills of the tag.
+//! The time of the estimate, and standstills of the tag.
 
 use super::{LOST_US, Place, Tracker};
 use crate::health::{count_heard, heard_lately};
@@ -8,7 +8,7 @@ use crate::{Error, OdometrySample, motion};
 use kestirim_kalman::Gaussian;
 use kestirim_scalar::Scalar;
 
-/// Estimate, its time, anchors heard, end of a doubt, whether it stands, and what the tag may be behind.
+/// A saved state: estimate, its time, number of anchors heard, end of the doubt and standstill, and mirror.
 pub(crate) type Timed<T, const D: usize, const N: usize> =
     (Option<Gaussian<T, N>>, u64, u8, (u64, bool), Option<Mirror<D>>);
 
@@ -17,16 +17,17 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
     const WHEELS_US: u64 = 500_000;
     /// Mean NIS of ranges above which a standstill is doubted.
     const NIS_OF_MOTION: f64 = 4.0;
-    /// Time for which standstills are doubted then (µs), …
+    /// Time for which standstills are then ignored, µs.
     const DOUBT_US: u64 = 30_000_000;
-    /// … and after the last time that the ranges then surely show motion, although the IMU shows none: this robot moves without shaking.
+    /// Time for which standstills are ignored after the ranges certainly showed motion while the IMU showed none, µs:
+    /// this robot moves without shaking.
     const CALM_US: u64 = 300_000_000;
-    /// The velocity is as uncertain then as at the start, (m/s)².
+    /// Variance that is then added to each component of the velocity, (m/s)², as at the start.
     const DOUBTED_VARIANCE: f64 = 0.25;
-    /// Turn rate above which a robot changes its direction between two ranges, rad/s.
+    /// Turn rate above which a robot changes its direction noticeably between two ranges, rad/s.
     const TURNING: f64 = 0.3;
 
-    /// Fields that [`Tracker::advance`] changes.
+    /// The fields that [`Tracker::advance`] changes.
     #[inline]
     pub(crate) fn timed(&self) -> Timed<T, D, N> {
         let standing = (self.doubted_until_us, self.stands);
@@ -43,7 +44,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         }
     }
 
-    /// Moves the estimate on to `time_us`; gives it up if it has become worthless.
+    /// Predicts the estimate to `time_us`; gives it up if it has become useless.
     #[inline]
     pub(crate) fn advance(&mut self, time_us: u64, push: Option<[T; D]>) -> Result<(), Error> {
         let elapsed = time_us.saturating_sub(self.time_us);
@@ -85,7 +86,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         Ok(())
     }
 
-    /// Takes notice of whether the tag is so near the line through the only anchors heard that it may cross it unseen.
+    /// Records whether the tag is so near the line through the only anchors heard that it may cross it unnoticed.
     #[inline(never)] // Rare.
     pub(super) fn look_behind(&mut self) {
         let Place::Known(estimate) = &self.place else { return };
@@ -106,13 +107,13 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         self.wheels.as_ref().filter(fresh)
     }
 
-    /// Whether IMU or wheels show that the tag stands, and are not in doubt.
+    /// Whether the IMU or the wheels indicate a standstill that is not in doubt.
     #[inline]
     pub(super) fn is_still(&self, time_us: u64) -> bool {
         time_us >= self.doubted_until_us && self.is_calm(time_us)
     }
 
-    /// Whether IMU or wheels show that the tag stands.
+    /// Whether the IMU or the wheels indicate a standstill.
     #[inline]
     fn is_calm(&self, time_us: u64) -> bool {
         let wheels_stand =
@@ -120,7 +121,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         self.stillness.is_still(time_us) || self.fresh_wheels(time_us).is_some_and(wheels_stand)
     }
 
-    /// A doubt goes on where the IMU shows none of the motion that ranges surely show.
+    /// Extends the doubt if the IMU shows none of the motion that the ranges certainly show.
     #[inline(never)] // Rare.
     fn go_on_doubting(&mut self, time_us: u64, estimate: &Gaussian<T, N>) {
         if self.stillness.is_still(time_us) && Standstill::is_refuted::<T, D, N>(estimate) {
@@ -128,8 +129,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         }
     }
 
-    /// Ranges that fit so badly on average while the tag is said to stand have one that moves: a trolley on a
-    /// smooth floor does not shake, and an IMU may have died.
+    /// Doubts standstills when ranges fit this badly on average while the tag is said to stand: a trolley on a smooth
+    /// floor does not shake, and an IMU may have failed.
     #[inline(never)] // Rare.
     pub(super) fn doubt_standing(&mut self) {
         if !self.is_still(self.time_us) {
@@ -138,7 +139,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         self.doubted_until_us = self.time_us.saturating_add(Self::DOUBT_US);
         if let Place::Known(estimate) = &mut self.place {
             for index in D..2 * D {
-                // Unless the variance is out of range already, in which case it is large enough.
+                // This fails only if the variance is out of range already, in which case it is large enough.
                 let _ = estimate.add_variance_at(index, T::from_f64(Self::DOUBTED_VARIANCE));
             }
         }

@@ -1,4 +1,4 @@
-//! One opinion of where a robot on wheels is.
+//! One hypothesis of the position and heading of a robot on wheels.
 
 use super::drive::Drive;
 use super::state::{BIAS, COSINE, COUNT, DRIFT, EXCESS, GAIN, SINE, X, Y};
@@ -13,25 +13,26 @@ use kestirim_scalar::{Columns, Components, Scalar};
 use kestirim_uwb_ranging::Room;
 use nalgebra::{SMatrix, SVector};
 
-/// An estimate, the turns that the wheels have counted, and what the ranges say of it.
+/// An estimate, the turns that the wheels have counted, and its likelihood from the ranges.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Course<T: Scalar> {
     pub(super) estimate: Gaussian<T, COUNT>,
-    /// φ, rad, within ±π.
+    /// Counted turn φ, rad, within ±π.
     turned: T,
-    /// Sum of NIS + ln S of the ranges: −2 ln of how probable they are, but for a constant.
+    /// Sum of NIS + ln S of the ranges: −2 times their log-likelihood, up to a constant.
     pub(super) cost: T,
 }
 
-/// Variance of c and s before anything is known of the heading, for a scale of 1 or so.
+/// Initial variance of c and s with an unknown heading, for a scale of about 1.
 const HEADING_VARIANCE: f64 = 0.5;
-/// A course that is so much less probable than the other (−2 ln) is given up: one of 20,000.
+/// Difference of costs (−2 times the log-likelihood) beyond which the worse course is given up: a probability of one
+/// in 20,000.
 const DECIDED: f64 = 20.0;
 
 impl<T: Scalar> Course<T> {
-    /// From a position (of a start in the plane: x, y and what is no state here), with a common bias and an
-    /// excess in 10 m of these standard deviations (m) and turns of this sign.
+    /// A course that starts at a position (of an estimate in the plane: x, y, and states that are ignored here), with
+    /// these standard deviations (m) of the common bias and of the excess in 10 m, and turns of this sign.
     pub(super) fn begun<const N: usize>(
         start: &Gaussian<T, N>,
         [bias, excess]: [T; 2],
@@ -56,7 +57,8 @@ impl<T: Scalar> Course<T> {
         Self { estimate: Gaussian::new(mean, covariance), turned: T::ZERO, cost: T::ZERO }
     }
 
-    /// Drives on for `interval` (s) without wheels, somehow, but no faster than at their last `speed` (m/s).
+    /// Predicts over `interval` (s) without odometry: the motion is unknown, at up to the last `speed` (m/s) of the
+    /// wheels.
     ///
     /// # Errors
     /// [`Error::Estimate`].
@@ -70,7 +72,7 @@ impl<T: Scalar> Course<T> {
         Ok(self.estimate.advance(&Drive { interval, way, turn, position_noise, heading_noise })?)
     }
 
-    /// Drives on for `interval` (s) as the wheels say. What they are doubted by multiplies their noise.
+    /// Predicts over `interval` (s) according to the wheels. The noise is multiplied by `doubt`.
     ///
     /// # Errors
     /// [`Error::Estimate`].
@@ -98,14 +100,14 @@ impl<T: Scalar> Course<T> {
         Ok(())
     }
 
-    /// Adds what a range says of the course.
+    /// Adds the cost of a range.
     #[inline]
     pub(super) fn charge(&mut self, seen: &Innovation<T>, most: T) {
         self.cost += seen.nis.min(most) + seen.variance.ln();
     }
 }
 
-/// An angle within ±π.
+/// The angle reduced to ±π.
 #[inline]
 fn wrapped<T: Scalar>(angle: T) -> T {
     let turn = T::TWO * T::PI;
@@ -119,7 +121,7 @@ fn wrapped<T: Scalar>(angle: T) -> T {
     }
 }
 
-/// Both courses, until one is much more probable than the other.
+/// Both courses, until one is much more likely than the other.
 pub(super) fn decided<T: Scalar>(courses: [Option<Course<T>>; 2]) -> [Option<Course<T>>; 2] {
     let [Some(mut first), Some(mut second)] = courses else { return courses };
     let most = T::from_f64(DECIDED);
@@ -129,15 +131,15 @@ pub(super) fn decided<T: Scalar>(courses: [Option<Course<T>>; 2]) -> [Option<Cou
     if second.cost > first.cost + most {
         return [Some(first), None];
     }
-    // Only their difference counts.
+    // Only their difference matters.
     let least = first.cost.min(second.cost);
     first.cost -= least;
     second.cost -= least;
     [Some(first), Some(second)]
 }
 
-/// The same without those that have left the room, by half a metre and three deviations more.
-#[inline(never)] // Where a room is known.
+/// The courses that have not left the room, with a margin of half a metre and three standard deviations.
+#[inline(never)] // Only called if a room is known.
 pub(super) fn within<T: Scalar>(
     courses: [Option<Course<T>>; 2],
     room: &Room<T>,
@@ -157,7 +159,7 @@ mod tests {
     use super::*;
     use core::f64::consts::PI;
 
-    /// Wheels that are half of what they say, turned by 0.7 rad, which count turns by a factor and a drift wrong.
+    /// Wheels that report half of the way, turned by 0.7 rad, with a gain and a drift of their turns.
     fn course() -> Course<f64> {
         let mut mean = SVector::zeros();
         (mean[X], mean[Y]) = (3.0, -4.0);
@@ -177,7 +179,7 @@ mod tests {
             for _ in 0..600 {
                 course.drive(0.05, &wheels(way, 0.2), 1.0).expect("a step");
             }
-            // 1 m/s, and 1.5 times the turn rate and a hundredth more, for half a minute: one and a half rounds.
+            // 1 m/s, and 1.5 times the turn rate plus 0.01 rad/s, for half a minute: one and a half turns.
             let (speed, rate, time) = (2.0 * way, 0.31, 30.0);
             let (begin, end) = (0.7, 0.7 + rate * time);
             let x = 3.0 + speed / rate * (f64::sin(end) - f64::sin(begin));
@@ -209,7 +211,7 @@ mod tests {
 
     #[test]
     fn without_wheels_it_drives_on_somehow() {
-        // In a direction for two seconds, and so at random; at half a metre a second at least.
+        // It keeps a direction for two seconds, and is random beyond; at half a metre per second at least.
         for (last, speed) in [(0.0, 0.5), (0.3, 0.5), (2.0, 2.0), (-2.0, 2.0)] {
             let mut course = course();
             course.drift(4.0, last).expect("a step");
@@ -240,7 +242,7 @@ mod tests {
         for (index, sigma) in [(DRIFT, 1.0), (GAIN, 0.5), (BIAS, 0.3), (EXCESS, 0.2)] {
             assert!((sigmas[index] - sigma).abs() < 1e-9, "{index}: {sigmas}");
         }
-        // Of a scale of 1 in any direction each coordinate has a variance of a half.
+        // With a scale of 1 in any direction each coordinate has a variance of a half.
         assert_eq!([COSINE, SINE].map(|index| p.get(index, index)), [Some(0.5); 2]);
         assert_eq!((course.turned, course.cost), (0.0, 0.0));
     }

@@ -4,31 +4,32 @@ use super::state::{BIAS, COSINE, COUNT, DRIFT, GAIN, SINE, X, Y};
 use kestirim_kalman::{Gaussian, Process};
 use kestirim_scalar::{Components, Scalar};
 
-/// A step as the wheels counted it.
+/// A step as counted by the wheels.
 ///
-/// Physics: the wheels' own count is a way δ = (cos φ, sin φ) d in axes of its own, with φ the turns so far and d what the
-/// step is long by. In the room it is K δ, K = \[c, −s; s, c\], which turns by the heading in which the count began, and
-/// stretches by the wheels' scale. With c and s as states that is **linear**: no heading need be known to begin with, nor
-/// whether the wheels count forwards. The turns are φ̇ = g ω + w, and what g and w are wrong by turns (c, s).
+/// Physics: the wheels count a way δ = (cos φ, sin φ) d in a frame of their own, with the turns φ so far and the
+/// length d of the step. In the room it is K δ, K = \[c, −s; s, c\], which rotates by the heading at which the count
+/// began, and stretches by the wheels' scale. With c and s as states this is **linear**: neither the heading nor the
+/// sign of the wheels' count need be known at the start. The turns are φ̇ = g ω + w, and errors of g and w rotate (c,
+/// s).
 ///
-/// Source: the linear form of relative orientation and scale is that of visual and inertial initialisation (Martinelli
-/// 2014); wheel odometry Siegwart, Nourbakhsh and Scaramuzza 2011, 5.2.4.
+/// Source: the linear form of relative orientation and scale is that of visual-inertial initialisation (Martinelli
+/// 2014); for wheel odometry, Siegwart, Nourbakhsh and Scaramuzza 2011, 5.2.4.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drive<T> {
-    /// Length of the step, s.
+    /// Duration of the step, s.
     pub(crate) interval: T,
-    /// The way in the axes of the count, m.
+    /// The way in the frame of the count, m.
     pub(crate) way: [T; 2],
-    /// The turn as measured, rad.
+    /// The measured turn, rad.
     pub(crate) turn: T,
-    /// Variance that the step adds to each coordinate, m², …
+    /// Variance that the step adds to each coordinate, m².
     pub(crate) position_noise: T,
-    /// … and to c and s.
+    /// Variance that the step adds to c and s.
     pub(crate) heading_noise: T,
 }
 
 impl<T: Scalar> Drive<T> {
-    /// Random walk of the drift, (rad in 100 s)²/s, and of the common bias, m²/s.
+    /// Random walks of the drift, (rad in 100 s)²/s, and of the common bias, m²/s.
     const DRIFT_DENSITY: f64 = 1e-4;
     const BIAS_DENSITY: f64 = 1e-5;
 }
@@ -76,7 +77,7 @@ mod tests {
             position_noise: 0.02,
             heading_noise: 0.003,
         };
-        // A covariance in which all depends on all.
+        // A covariance in which all states are correlated.
         let root = SMatrix::<f64, COUNT, COUNT>::from_fn(|i, j| {
             0.1 * ((3 * i + 5 * j) % 7) as f64 + f64::from(u8::from(i == j))
         });
@@ -97,7 +98,7 @@ mod tests {
         }
         let f = turned * f;
         let mut after = f * before * f.transpose();
-        // Drift wanders by a hundredth of a radian in 100 s, the bias by a centimetre in ten, each second.
+        // The drift's random walk is a hundredth of a radian in 100 s per √s, the bias's a centimetre in ten seconds.
         for (state, variance) in
             [(X, 0.02), (Y, 0.02), (COSINE, 0.003), (SINE, 0.003), (DRIFT, 0.4e-4), (BIAS, 0.4e-5)]
         {

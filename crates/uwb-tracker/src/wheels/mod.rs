@@ -1,4 +1,4 @@
-//! A tag on a robot with wheels.
+//! Tracking of a tag on a robot with wheels.
 
 mod course;
 mod drive;
@@ -22,47 +22,48 @@ use kestirim_kalman::Gaussian;
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::SVector;
 
-/// A tag in the plane on a robot whose wheels are counted, from single ranges of up to A anchors.
+/// Tracks a tag in the plane on a robot with wheel odometry, from single ranges of up to A anchors.
 ///
-/// The wheels move the estimate, the ranges correct it. Scale and drift of the wheels' turns are estimated, and so is
-/// the heading, of which nothing need be known; whether they turn left or right is found out by following both until the
-/// ranges have decided, or one of them has left the [`Config::room`]. Ranges may be too long by a common bias, and in
-/// proportion to the distance.
+/// The wheels drive the prediction, the ranges correct it. Scale, gain and drift of the odometry are estimated, and so
+/// is the heading, of which nothing need be known. Whether positive turns are to the left or to the right is found out
+/// by following both hypotheses until the ranges have decided, or one of them has left the [`Config::room`]. Ranges
+/// may have a common bias, and an excess proportional to the distance.
 ///
-/// The eight states are the position (m), k cos θ and k sin θ of the wheels' scale k and the heading θ in which their
-/// count began, the turns' drift (rad in 100 s) and gain, the bias of all ranges (m) and their excess in 10 m (m).
+/// The eight states are the position (m), k cos θ and k sin θ with the wheels' scale k and the heading θ at which
+/// their count began, the drift (rad in 100 s) and gain of the turns, the bias of all ranges (m) and their excess in
+/// 10 m (m).
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WheelTracker<T: Scalar, const A: usize> {
     config: Config<T>,
     links: Vec<Link<T>, A>,
-    /// Two while it is not decided to which side turns are counted; none without a position.
+    /// Two courses while the sign of the turns is undecided; none without a position.
     courses: [Option<Course<T>>; 2],
     /// Time of the estimate, µs.
     time_us: u64,
     wheels: Option<OdometrySample<T>>,
     heard: u8,
     pace: Pace,
-    /// How much larger the anchors' place is than an office.
+    /// Size of the anchors' area relative to an office.
     size: T,
     counters: Counters<T>,
     start: Start<T, 2, A>,
 }
 
-/// Mean NIS of ranges from which on the wheels are taken to slip, or to be others' than the robot's; below it, their
-/// noise grows with it.
+/// Mean NIS of ranges above which the wheels are assumed to slip, or not to be this robot's; below it, their noise
+/// grows with it.
 const NIS_OF_SLIP: f64 = 4.0;
-/// Least scale of wheels that have a heading.
+/// Smallest scale of wheels for which a heading is defined.
 const LEAST_SCALE: f64 = 0.1;
 
 impl<T: Scalar, const A: usize> WheelTracker<T, A> {
-    /// A tracker for these anchors, before its first position.
+    /// Creates a tracker for these anchors, before its first position.
     ///
     /// # Errors
     /// [`Error::TooManyAnchors`] or [`Error::NotFinite`].
     pub fn new(config: Config<T>, anchors: &[Anchor<T>]) -> Result<Self, Error> {
         let size = size(anchors);
-        // What grows with the distance is a state here, and no constant error.
+        // The excess that grows with the distance is a state here, not a constant error.
         let (learning, bias_sigma) = (config.learning, config.bias_sigma);
         let config = Config { learning, bias_sigma, ..config.scaled(size) };
         let mut links = Vec::new();
@@ -84,20 +85,20 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         })
     }
 
-    /// Position of the tag, m; none before the first one, or when it is lost.
+    /// Position of the tag, m; `None` before the first one, or when it is lost.
     #[inline]
     pub fn position(&self) -> Option<SVector<T, 2>> {
         let mean = self.estimate()?.mean;
         Some(SVector::from_fn(|axis, _| mean.as_array()[axis]))
     }
 
-    /// Mean and covariance of all states.
+    /// Mean and covariance of all states; `None` without a position.
     #[inline]
     pub fn estimate(&self) -> Option<&Gaussian<T, COUNT>> {
         self.courses.get(self.best())?.as_ref().map(|course| &course.estimate)
     }
 
-    /// By what the wheels' ways are to be multiplied; negative scales are headings backwards. None before it is known.
+    /// The factor to be applied to the wheels' distances (its sign is part of the heading); `None` before it is known.
     pub fn scale(&self) -> Option<T> {
         let mean = self.estimate()?.mean;
         let scale = mean.as_array()[COSINE].hypot(mean.as_array()[SINE]);
@@ -110,7 +111,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         let stands =
             |wheels: &OdometrySample<T>| wheels.speed == T::ZERO && wheels.turn_rate == T::ZERO;
         let place = self.estimate().and_then(|estimate| {
-            // In the room's metres; of wheels not heard lately, what they said last.
+            // In the room's metres; if the wheels were not heard lately, with their last speed.
             let counted = self.wheels.map_or(T::ZERO, |wheels| wheels.speed);
             let state = estimate.mean.as_array();
             let speed = counted * state[COSINE].hypot(state[SINE]);
@@ -118,7 +119,8 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
                 position: self.position()?,
                 variance: estimate.covariance.get(0, 0)? + estimate.covariance.get(1, 1)?,
                 speed_squared: speed * speed,
-                // Two courses with opposite turns are followed; of anchors in one line both fit, which is not told here.
+                // Two courses with opposite turns are followed; with collinear anchors both fit, which is not reported
+                // here.
                 mirror: None,
                 common: Common::NONE,
             })
@@ -140,11 +142,11 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         Ok(())
     }
 
-    /// Takes in a sample of the wheels: what they did since the one before.
+    /// Processes a sample of the wheels: their motion since the previous one.
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::ImplausibleMotion`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the
-    /// tracker is as it was.
+    /// [`Error::NotFinite`], [`Error::ImplausibleMotion`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the tracker
+    /// is unchanged.
     pub fn odometry(&mut self, sample: &OdometrySample<T>) -> Result<(), Error> {
         plausible_wheels(sample)?;
         self.check_time(sample.time_us)?;
@@ -156,10 +158,10 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         advanced
     }
 
-    /// Takes in a range.
+    /// Processes a range.
     ///
     /// # Errors
-    /// Any [`Error`] but `TooManyAnchors`; the tracker is as it was.
+    /// Any [`Error`] but `TooManyAnchors`; the tracker is unchanged.
     pub fn range(&mut self, sample: &RangeSample<T>) -> Result<Report<T>, Error> {
         let link = self.links.get(sample.anchor).ok_or(Error::NoSuchAnchor)?;
         let range = link.admit(sample)?;
@@ -178,7 +180,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         if late { Err(Error::OutOfOrder) } else { Ok(()) }
     }
 
-    /// The course that explains the ranges best.
+    /// Index of the course that explains the ranges best.
     #[inline]
     fn best(&self) -> usize {
         match &self.courses {
@@ -196,7 +198,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         self.wheels.as_ref().filter(is_fresh)
     }
 
-    /// Drives all courses on to `time_us`; gives the position up if it has become worthless.
+    /// Predicts all courses to `time_us`; gives the position up if it has become useless.
     fn advance(&mut self, time_us: u64) -> Result<(), Error> {
         let elapsed = time_us.saturating_sub(self.time_us);
         if elapsed == 0 {
@@ -227,7 +229,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         Ok(())
     }
 
-    /// Takes in a range at the estimate's own time.
+    /// Updates the courses with a range at the estimate's own time.
     fn measure(&mut self, sample: &RangeSample<T>, range: T) -> Result<Report<T>, Error> {
         let best = self.best();
         let link = self.links.get_mut(sample.anchor).ok_or(Error::NoSuchAnchor)?;
@@ -241,7 +243,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         let mut result = None;
         for (index, course) in courses.iter_mut().enumerate() {
             let Some(course) = course else { continue };
-            // What the anchor is worth is learnt from the better course alone.
+            // The anchor's noise is learnt from the better course alone.
             let mut other = *link;
             let link = if index == best { &mut learning } else { &mut other };
             let (outcome, seen) =
@@ -269,7 +271,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         Ok(Report { outcome, innovation: Some(seen) })
     }
 
-    /// Keeps a range for a first position, and makes one if it can.
+    /// Stores a range for a first position, and determines one if possible.
     #[inline(never)] // Rare, and large.
     fn collect(&mut self, sample: &RangeSample<T>, range: T) -> Report<T> {
         let fresh_us = self.pace.fresh_us();
@@ -294,7 +296,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         };
         let biases = common_sigmas(self.config.common_bias_sigma / self.size, self.size);
         let course = |gain| Some(Course::begun(&begun.estimate, biases, gain));
-        // It is of the time of its ranges: the next sample moves it on.
+        // It applies to the time of its ranges: the next sample predicts it further.
         (self.courses, self.time_us) = ([course(T::ONE), course(-T::ONE)], begun.time_us);
         for link in &mut self.links {
             *link = link.begun(&self.config);

@@ -1,11 +1,11 @@
-//! The tracker of a robot on wheels: two courses, what they learn, and when they are given up.
+//! The tracker of a robot on wheels: its two courses, what they learn, and when they are given up.
 
 use super::*;
 use crate::State;
 use crate::wheels::state::GAIN;
 use kestirim_adaptive_kalman::MeasurementNoise;
 
-/// Corners of a room, as many as there are anchors, and a field of eight times its size.
+/// Corners of a room, with an anchor in each of the first A; multiplied by 8 they are those of a field.
 const CORNERS: [[f64; 3]; 4] =
     [[-4.0, -3.0, 1.0], [4.0, -3.0, 1.0], [4.0, 3.0, 1.0], [-4.0, 3.0, 1.0]];
 
@@ -20,7 +20,7 @@ fn wheels(time_us: u64, speed: f64, turn_rate: f64) -> OdometrySample<f64> {
     OdometrySample { time_us, speed, turn_rate }
 }
 
-/// Hears an anchor of a tag on the floor of its height.
+/// Processes a range of an anchor to a tag at the anchors' height.
 fn hear<const A: usize>(
     tracker: &mut WheelTracker<f64, A>,
     time_us: u64,
@@ -131,7 +131,7 @@ fn a_position_is_as_uncertain_as_both_coordinates_and_what_stays_at_its_speed() 
         let bias = health.bias_sigma;
         let sigma = health.position_sigma.expect("a position");
         assert!((sigma * sigma - own - bias * bias).abs() < 1e-9, "{health:?}");
-        // 10 cm each, and as much again where it stands; no anchor is better than another.
+        // 10 cm each, and as much again while it stands; all anchors are equal.
         let speed = counted * scale;
         let stands = 0.01 / (0.01 + speed * speed);
         let expected = 0.1 * (1.0 + stands).sqrt() * health.dilution.expect("four anchors");
@@ -140,7 +140,7 @@ fn a_position_is_as_uncertain_as_both_coordinates_and_what_stays_at_its_speed() 
     }
 }
 
-/// State of a tracker in a field 80 m wide after gaps (µs) between ranges, from when it drove at 1 m/s.
+/// State of a tracker in a field with a diagonal of 80 m, after gaps (µs) between ranges; the robot last drove at 1 m/s.
 fn after_gaps<const K: usize>(gaps_us: [u64; K]) -> State {
     let mut tracker = tracker::<4>(8.0);
     tracker.odometry(&wheels(0, 1.0, 0.0)).expect("wheels");
@@ -156,8 +156,8 @@ fn after_gaps<const K: usize>(gaps_us: [u64; K]) -> State {
 
 #[test]
 fn a_position_is_given_up_after_a_minute_or_when_it_is_worthless() {
-    // In a direction for two seconds at 1 m/s, and so on at random: 120 m² after a minute, and of 6.7 offices' size no more
-    // than (13.3 m)², 178 m², are of use.
+    // It keeps a direction for two seconds at 1 m/s, and is random beyond: 120 m² after a minute. With the size of 6.7
+    // offices, up to (13.3 m)², 178 m², are useful.
     assert_eq!(after_gaps([60_000_000]), State::Tracking);
     assert_eq!(after_gaps([60_000_001]), State::Lost);
     assert_eq!(after_gaps([50_000_000, 30_000_000]), State::Tracking);
@@ -167,7 +167,7 @@ fn a_position_is_given_up_after_a_minute_or_when_it_is_worthless() {
 #[test]
 fn a_first_position_waits_for_all_anchors_or_one_of_them_again() {
     let mut tracker = tracker::<4>(1.0);
-    // Some radios ask each twice; the fourth is silent.
+    // Some radios poll each anchor twice; the fourth is silent.
     for (time_us, anchor) in
         [(0, 0), (10_000, 0), (20_000, 1), (30_000, 2), (40_000, 2), (50_000, 0)]
     {
@@ -175,7 +175,7 @@ fn a_first_position_waits_for_all_anchors_or_one_of_them_again() {
         assert_eq!(report.outcome, Outcome::Collected, "{time_us}");
         assert_eq!(tracker.start.is_on(), time_us == 50_000, "{time_us}");
     }
-    // What three say is looked at from every side, in a few ranges.
+    // The position from three anchors is searched for from all starts, over a few ranges.
     let mut later = (6..20_u64).map(|k| {
         let report = hear(&mut tracker, 10_000 * k, k as usize % 3, [1.0, 0.5]);
         report.expect("a range").outcome
@@ -212,7 +212,7 @@ fn what_leaves_the_room_is_given_up() {
     let left = |courses| within(courses, &room).map(|course| course.is_some());
     assert_eq!(left([at(inside), at(outside)]), [true, false]);
     assert_eq!(left([None, at(-outside)]), [false, false]);
-    // As a range of where it is not finds it.
+    // A range that is consistent with the position outside does not keep it.
     begun.courses = [None, at(-outside)];
     hear(&mut begun, 1, 0, [1.0, -outside]).expect("a range");
     assert!(begun.position().is_none());

@@ -1,4 +1,5 @@
-//! Whatever is fed in: a typed error and an untouched tracker, or a finite position and a covariance.
+//! Arbitrary input: each call returns a typed error and leaves the tracker unchanged, or a finite position and
+//! covariance.
 
 use crate::common::{CORNERS, anchors, distance, sample};
 use kestirim_kalman::Gaussian;
@@ -7,7 +8,7 @@ use kestirim_uwb_tracker::{Config, Error, InertialSample, OdometrySample, Tracke
 use nalgebra::{SMatrix, Vector3};
 use proptest::prelude::*;
 
-/// Something that comes from a sensor, good or bad, and how long after the last.
+/// A sensor event, good or bad, and the time since the last one.
 #[derive(Clone, Copy, Debug)]
 enum Event {
     Range { later_us: i64, anchor: usize, range: f64 },
@@ -87,7 +88,7 @@ fn feed<T: Scalar, const D: usize, const N: usize>(
     Ok(())
 }
 
-/// Finite, with a covariance that is one.
+/// Checks that the estimate is finite, and its covariance valid.
 fn is_an_estimate<T: Scalar, const N: usize>(
     estimate: &Gaussian<T, N>,
     event: &Event,
@@ -97,13 +98,13 @@ fn is_an_estimate<T: Scalar, const N: usize>(
     let deviations = p.diagonal().map(f64::sqrt);
     prop_assert!(deviations.iter().all(|deviation| *deviation > 0.0), "{:?} {}", event, p);
     let scale = SMatrix::<f64, N, N>::from_diagonal(&deviations.map(f64::recip));
-    // A Cholesky factor with a hair's breadth exists of every positive semidefinite matrix.
+    // With a tiny margin, every positive semidefinite matrix has a Cholesky factor.
     let correlations = scale * p * scale + SMatrix::<f64, N, N>::identity() * 1e-6;
     prop_assert!(correlations.cholesky().is_some(), "{:?} {}", event, p);
     Ok(())
 }
 
-/// The same on wheels.
+/// Feeds the events to a tracker on wheels.
 fn drive<T: Scalar>(config: Config<T>, events: &[Event]) -> Result<(), TestCaseError> {
     let mut tracker = WheelTracker::<T, 4>::new(config, &anchors(&CORNERS, 0.0)).unwrap();
     let (mut now_us, number) = (1_000_000_u64, T::from_f64);

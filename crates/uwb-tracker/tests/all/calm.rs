@@ -1,12 +1,12 @@
-//! A robot that moves without shaking, so that its IMU shows the same as if it stood.
+//! A robot that moves without shaking, so that its IMU reads as if it stood still.
 
 use crate::common::{CORNERS, anchors, distance, in_every_scalar, sample};
 use kestirim_scalar::Scalar;
 use kestirim_uwb_tracker::{Config, InertialSample, Tracker};
 use nalgebra::Vector3;
 
-/// How far the tracker is off on average, m, of a tag whose x is `way(seconds)`, in the ten seconds before `until`, s; of which no range
-/// comes while it is `silent`.
+/// Mean position error, m, for a tag whose x is `way(seconds)`, in the ten seconds before `until`, s. No range arrives
+/// while it is `silent`.
 fn error<T: Scalar>(way: impl Fn(f64) -> f64, silent: impl Fn(f64) -> bool, until: u32) -> f64 {
     let mut tracker =
         Tracker::<T, 2, 5, 4>::new(Config::uncalibrated(T::ONE), &anchors(&CORNERS, 0.0)).unwrap();
@@ -37,7 +37,7 @@ fn error<T: Scalar>(way: impl Fn(f64) -> f64, silent: impl Fn(f64) -> bool, unti
 }
 
 fn check_slow<T: Scalar>() {
-    // Between 1 and 7 m, to and fro.
+    // Between 1 and 7 m, back and forth.
     for speed in [0.03, 0.05, 0.1] {
         let way = |seconds: f64| {
             let along = speed * seconds % 12.0;
@@ -53,7 +53,8 @@ fn a_slow_robot_is_followed() {
     in_every_scalar!(check_slow);
 }
 
-/// A robot at 1 m/s whose ranges stay away for two seconds of ten: each time its velocity may be zero again, as far as is known.
+/// A robot at 1 m/s without ranges for two seconds of every ten: each time its velocity may be zero again, as far as
+/// is known.
 #[test]
 fn a_robot_whose_ranges_stay_away_is_not_held_again_and_again() {
     let way = |seconds: f64| 4.0 + 2.5 * (0.4 * seconds).sin();

@@ -1,4 +1,4 @@
-//! A tag that only listens: pairs of anchors in any order, obstacles, and what is refused.
+//! A tag that only listens: pairs of anchors in any order, obstacles, and refused input.
 
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_tracker::{
@@ -31,12 +31,12 @@ fn distance(anchor: usize, [x, y]: [f64; 2]) -> f64 {
     (x - ax).hypot(y - ay).hypot(1.0 - az)
 }
 
-/// Where the tag is at a time, s.
+/// Position of the tag at a time, s.
 fn place(seconds: f64) -> [f64; 2] {
     [4.0 + 2.0 * (0.2 * seconds).sin(), 3.0 + 1.5 * (0.2 * seconds).cos()]
 }
 
-/// Anchors by pairs: each after the one before, all against the first, or as it happens.
+/// Pairs of anchors: each after the one before, all against the first, or at random.
 fn pairs(form: &str, k: usize) -> [usize; 2] {
     match form {
         "ring" => [k % 6, (k + 1) % 6],
@@ -45,12 +45,12 @@ fn pairs(form: &str, k: usize) -> [usize; 2] {
     }
 }
 
-/// Errors of up to ± 7 cm that do not follow each other.
+/// Uncorrelated errors of up to ± 7 cm.
 fn noise(k: usize) -> f64 {
     ((k * 7919) % 101) as f64 / 100.0 * 0.14 - 0.07
 }
 
-/// Follows 20 s at 100 differences a second; the largest error after five, m.
+/// Tracks the tag for 20 s at 100 differences per second; returns the largest error after five, m.
 fn followed<T: Scalar>(form: &str, excess: impl Fn(usize, usize) -> f64) -> f64 {
     let mut tracker = listener::<T>(0.0);
     let mut worst = 0.0_f64;
@@ -88,7 +88,7 @@ fn pairs_of_any_order_are_followed() {
 
 #[test]
 fn an_obstacle_before_one_anchor_moves_the_position_little() {
-    // From the eighth to the twelfth second anchor 2 is heard off a wall, 3 m late.
+    // From the eighth to the twelfth second anchor 2 is received by way of a wall, 3 m late.
     let late = |anchor: usize, k: usize| {
         if anchor == 2 && (800..1200).contains(&k) { 3.0 } else { 0.0 }
     };
@@ -113,7 +113,7 @@ fn biases_of_anchors_come_off() {
 
 #[test]
 fn too_few_anchors_make_no_position() {
-    // Three anchors in the plane: two differences, of which there are two positions.
+    // Three anchors in the plane: two differences, which allow two positions.
     let mut tracker = listener::<f64>(0.0);
     for k in 0..500 {
         let anchors = [k % 3, (k + 1) % 3];
@@ -158,7 +158,7 @@ proptest! {
                 prop_assert_eq!(before, format!("{tracker:?}"));
             }
         }
-        // A second of true ones later it knows where it is.
+        // After a second of true ones it is located.
         for k in 0..3000 {
             let anchors = pairs("ring", k);
             let [one, other] = anchors.map(|anchor| distance(anchor, [3.0, 2.0]));

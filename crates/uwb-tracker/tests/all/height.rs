@@ -1,4 +1,4 @@
-//! The height of a tag from its ranges: found, told apart as far as it can be, and honest about the rest.
+//! The height of a tag from its ranges: found, distinguished as far as possible, and with an honest uncertainty.
 
 use crate::common::{CORNERS, anchors, distance, sample};
 use kestirim_scalar::{Q12_20, Scalar};
@@ -7,7 +7,7 @@ use kestirim_uwb_tracker::{Error, HeightFinder, RangeSample};
 use nalgebra::{SVector, Vector3};
 use proptest::prelude::*;
 
-/// Numbers of mean 0 and deviation 1 that look normal: twelve of Marsaglia's xorshift.
+/// Approximately normal numbers of mean 0 and standard deviation 1: sums of twelve from Marsaglia's xorshift.
 fn normal(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
     move || {
@@ -21,12 +21,12 @@ fn normal(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// The corners of a room of 6 m × 5 m, all as high.
+/// The corners of a room of 6 m × 5 m, all at one height.
 fn corners(height: f64) -> [[f64; 3]; 4] {
     [[0.0, 0.0, height], [6.0, 0.0, height], [6.0, 5.0, height], [0.0, 5.0, height]]
 }
 
-/// A round through the room, s.
+/// Duration of a round through the room, s.
 const ROUND_S: f64 = 60.0;
 
 fn on_the_round(seconds: f64) -> [f64; 2] {
@@ -34,7 +34,8 @@ fn on_the_round(seconds: f64) -> [f64; 2] {
     [3.0 + 2.4 * cos, 2.5 + 1.9 * sin]
 }
 
-/// What a tag on the round hears ten times a second: each link errs by `link` (m) of its own from place to place.
+/// Feeds the ranges of a tag on the round, ten times per second: each link has an error of its own (`link`, m) that
+/// changes from place to place.
 fn round<T: Scalar>(
     finder: &mut HeightFinder<T, 4>,
     places: &[[f64; 3]],
@@ -49,7 +50,7 @@ fn round<T: Scalar>(
         let seconds = 0.1 * f64::from(epoch);
         let [x, y] = on_the_round(seconds);
         for (index, place) in places.iter().enumerate() {
-            // The tag moves by 30 cm in 1.3 s: so long an error lasts.
+            // The tag moves by 30 cm in 1.3 s, after which errors change.
             if epoch % 13 == 0 {
                 errors[index] = link * random();
             }
@@ -96,7 +97,7 @@ fn a_low_tag_among_high_anchors_in_every_number() {
 
 #[test]
 fn three_anchors_will_do() {
-    // Those of a published recording, and its three metres of room.
+    // The anchors of a published recording, in its room of three metres.
     let places = [[5.0, 0.0, 1.3], [0.1, 0.5, 2.0], [3.0, 5.0, 2.1]];
     let height = found::<f32>(&places, 0.1, &[0.1, 0.05, 0.12], 0.03, 4);
     assert!((height.metres - 0.1).abs() < 2.5 * height.sigma, "{height:?}");
@@ -116,7 +117,7 @@ fn calibrated_anchors_tell_it_better() {
 
 #[test]
 fn of_mirror_images_the_lower_is_taken_and_moves_nothing() {
-    // 0.3 and 1.9 m are as far from anchors at 1.1 m: ranges of both are the same.
+    // 0.3 and 1.9 m are equally far from anchors at 1.1 m: both give the same ranges.
     let places = corners(1.1);
     for truth in [0.3, 1.9] {
         let mut finder = HeightFinder::<f64, 4>::calibrated(&anchors(&places, 0.0)).unwrap();
@@ -125,7 +126,7 @@ fn of_mirror_images_the_lower_is_taken_and_moves_nothing() {
         assert!((height.metres - 0.3).abs() < 2.5 * height.sigma, "{truth}: {height:?}");
         assert!(height.metres + height.sigma < 1.1 && height.position_sigma < 0.05, "{height:?}");
     }
-    // Anchors of different heights tell above from below.
+    // Anchors at different heights distinguish above from below.
     for truth in [0.4, 1.8] {
         let height = found::<f64>(&CORNERS, truth, &[0.0; 4], 0.01, 3);
         assert!((height.metres - truth).abs() < 2.5 * height.sigma, "{truth}: {height:?}");
@@ -146,7 +147,7 @@ fn beside_anchors_of_its_own_height_it_is_unknown_and_does_not_matter() {
     assert!(height.sigma > 0.2 && height.position_sigma < 0.06, "{height:?}");
 }
 
-/// The height of a tag that stays at a place.
+/// The height of a stationary tag.
 fn standing(places: &[[f64; 3]], tag: [f64; 3]) -> Height<f64, 4> {
     let mut finder = HeightFinder::<f64, 4>::uncalibrated(&anchors(places, 0.0)).unwrap();
     for epoch in 0..100_u64 {
@@ -164,7 +165,7 @@ fn standing(places: &[[f64; 3]], tag: [f64; 3]) -> Height<f64, 4> {
 fn a_tag_that_stands_beyond_three_anchors_is_not_told_its_height() {
     let height = standing(&[[2.8, 0.0, 1.3], [0.1, 0.0, 2.0], [1.9, 4.1, 2.1]], [3.5, 4.7, 0.0]);
     assert!(height.sigma > 0.3 && height.position_sigma > 0.15, "{height:?}");
-    // In the middle of four, the height is as unknown and moves less.
+    // In the middle of four anchors the height is as uncertain, but has less effect.
     let height = standing(&corners(2.0), [3.0, 2.5, 0.2]);
     assert!(height.sigma > 0.3 && height.position_sigma < 0.02, "{height:?}");
 }
@@ -190,7 +191,7 @@ fn the_deviation_is_honest() {
     }
     println!("{within:?} of {runs} within 1 and 2.5 σ");
     assert!(10 * within[1] >= 9 * runs && 2 * within[0] >= runs, "{within:?}");
-    // Nor is it larger than it needs to be.
+    // It is no larger than necessary either.
     assert!(within[0] < runs, "{within:?}");
 }
 
@@ -266,7 +267,7 @@ fn anchors_in_a_line_tell_nothing() {
     let line = [[0.0, 0.0, 2.0], [3.0, 0.0, 2.0], [6.0, 0.0, 2.0]];
     let mut finder = HeightFinder::<f64, 4>::uncalibrated(&anchors(&line, 0.0)).unwrap();
     round(&mut finder, &line, 0.5, &[0.0; 3], 0.03, 9);
-    // The tag's distance from the line is a height as well as a distance in the plane.
+    // The tag's distance from the line may be a height or a distance in the plane.
     let height = finder.height();
     assert!(height.is_none_or(|height| height.sigma > 0.3), "{height:?}");
 }

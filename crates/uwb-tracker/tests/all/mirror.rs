@@ -1,16 +1,16 @@
-//! A tag of which too few anchors are heard to tell on which side of them it is.
+//! A tag of which too few anchors are heard to tell on which of their sides it is.
 
 use crate::common::{CORNERS, anchors, distance, in_every_scalar, sample};
 use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::Room;
 use kestirim_uwb_tracker::{CalibratedPlaneTracker, CalibratedSpaceTracker, Config};
 
-/// The corners 0 and 2 of the room make a diagonal, of which the tag is in the middle at a distance, m.
+/// The corners 0 and 2 of the room form a diagonal; the tag is beside its middle at this distance, m.
 fn beside_the_diagonal(distance: f64) -> [f64; 3] {
     [4.0 - 0.6 * distance, 3.0 + 0.8 * distance, 1.0]
 }
 
-/// A tag in a plane that has moved for so many tenths of a second towards the diagonal and back, at 0.4 m/s.
+/// A tag in a plane that has moved for some tenths of a second towards the diagonal and back, at 0.4 m/s.
 struct Walk<T: Scalar> {
     tracker: CalibratedPlaneTracker<T, 4>,
     time_us: u64,
@@ -22,7 +22,7 @@ impl<T: Scalar> Walk<T> {
         Self { tracker, time_us: 0 }
     }
 
-    /// From one distance of the diagonal to another, where these anchors are heard.
+    /// Moves from one distance from the diagonal to another, while these anchors are heard.
     fn go(&mut self, from: f64, to: f64, heard: &[usize]) {
         let steps = ((to - from).abs() / 0.04).round() as usize;
         for step in 1..=steps {
@@ -35,7 +35,7 @@ impl<T: Scalar> Walk<T> {
         }
     }
 
-    /// Distance of the position from the tag, m, and as much as is said about it.
+    /// Distance of the position from the tag, m, and the reported standard deviation.
     fn error_and_sigma(&self, at: f64) -> (f64, f64) {
         let tag = beside_the_diagonal(at);
         let position = self.tracker.position().unwrap().map(T::to_f64);
@@ -44,7 +44,7 @@ impl<T: Scalar> Walk<T> {
         (error, health.position_sigma.unwrap().to_f64())
     }
 
-    /// How far the other place is from where it is to be, m; none if there is none.
+    /// Distance of the mirror image from its expected position, m; `None` without one.
     fn image_beside(&self, at: f64) -> Option<f64> {
         let place = self.tracker.mirror_image()?.map(T::to_f64);
         let tag = beside_the_diagonal(at);
@@ -59,7 +59,7 @@ fn check_turn<T: Scalar>() {
     assert_eq!(walk.tracker.mirror_image(), None, "not near yet");
     walk.go(1.6, 0.0, &[0, 2]);
     assert!(walk.tracker.mirror_image().is_some());
-    // It turns back, and looks as if it had gone on.
+    // It turns back, and appears to have gone on.
     walk.go(0.0, 2.0, &[0, 2]);
     let (error, sigma) = walk.error_and_sigma(2.0);
     assert!(error < 3.0 * sigma, "{error} m with a σ of {sigma} m");
@@ -69,7 +69,7 @@ fn check_turn<T: Scalar>() {
     assert!((apart - 4.0).abs() < 0.4, "{apart} m");
     let places = [error, walk.image_beside(2.0).unwrap()];
     assert!(places.iter().any(|error| *error < 0.2), "one of both is right: {places:?}");
-    // A third anchor tells at once, or takes the position away if it was the wrong one.
+    // A third anchor decides at once, or discards the position if it was the wrong one.
     walk.go(2.0, 2.4, &[0, 1, 2, 3]);
     walk.go(2.4, 2.0, &[0, 1, 2, 3]);
     let (error, sigma) = walk.error_and_sigma(2.0);
@@ -125,7 +125,7 @@ fn far_from_the_line_two_anchors_leave_one_place() {
 
 #[test]
 fn a_wall_tells_which_place_it_is() {
-    // The anchors 0 and 1 are at one wall of the room, behind which the tag cannot be.
+    // The anchors 0 and 1 are on one wall of the room, behind which the tag cannot be.
     for room in [None, Some(Room::plane(0.0, 0.0, 8.0, 6.0))] {
         let config = Config { room, ..Config::calibrated(1.0) };
         let mut tracker =
@@ -161,7 +161,7 @@ fn three_anchors_in_space_leave_two_places_at_their_plane() {
     assert!((place.z + other.z - 4.0).abs() < 1e-6, "{place} and {other}");
 }
 
-/// Anchors along one wall: which side of it the tag is on is in no range.
+/// Anchors along one wall: the ranges do not tell on which of its sides the tag is.
 fn check_wall<T: Scalar>() {
     let wall = [[0.0, 0.0, 2.0], [4.0, 0.03, 2.4], [8.0, 0.0, 1.6], [6.0, -0.04, 2.0]];
     let bent = [wall[0], wall[1], [8.0, 0.5, 1.6], wall[3]];

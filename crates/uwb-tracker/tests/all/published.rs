@@ -1,4 +1,4 @@
-//! The trackers that ours is compared with: a position an epoch, and the paper's filter.
+//! The trackers for comparison: a position per epoch, and the paper's filter.
 
 use crate::common::{CORNERS, anchors, distance, in_every_scalar, sample};
 use kestirim_adaptive_kalman::Error as Refusal;
@@ -62,7 +62,7 @@ fn published<T: Scalar>(config: PublishedConfig<T, 2>) -> Published<T> {
     PublishedTracker::new(config, &anchors).unwrap()
 }
 
-/// One epoch of all anchors, of a tag that stands still.
+/// One epoch of all anchors, for a stationary tag.
 fn epoch<T: Scalar>(tracker: &mut Published<T>, time_us: u64) -> PublishedOutcome {
     for (anchor, &place) in CORNERS.iter().enumerate() {
         assert_eq!(tracker.end_epoch(time_us), PublishedOutcome::Incomplete);

@@ -1,4 +1,4 @@
-//! What a tracker makes of good and bad ranges, in every scalar.
+//! A tracker with good and bad ranges, in every scalar.
 
 use crate::common::{CORNERS, anchors, distance, in_every_scalar, sample};
 use kestirim_scalar::{Q12_20, Scalar};
@@ -23,7 +23,7 @@ impl<T: Scalar, const N: usize> Bench<T, N> {
         Self { tracker, time_us: 0, noise: 88_172_645_463_325_252 }
     }
 
-    /// From −1 to 1.
+    /// Noise from −1 to 1.
     fn noise(&mut self) -> f64 {
         self.noise ^= self.noise << 13;
         self.noise ^= self.noise >> 7;
@@ -31,7 +31,7 @@ impl<T: Scalar, const N: usize> Bench<T, N> {
         (self.noise >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
-    /// One epoch, 0.1 s after the last, of all corners; `excess` is added to each range.
+    /// One epoch of all corners, 0.1 s after the last; `excess` is added to the ranges.
     fn epoch(&mut self, tag: [f64; 2], excess: [f64; 4]) -> Vec<Report<T>> {
         self.time_us += 100_000;
         let tag = [tag[0], tag[1], 1.0];
@@ -43,7 +43,7 @@ impl<T: Scalar, const N: usize> Bench<T, N> {
             .collect()
     }
 
-    /// How far the position is from the tag, m.
+    /// Distance of the position from the tag, m.
     fn error(&self, tag: [f64; 2]) -> f64 {
         let position = self.tracker.position().expect("there is a position");
         (position[0].to_f64() - tag[0]).hypot(position[1].to_f64() - tag[1])
@@ -194,7 +194,7 @@ fn the_first_position_waits_for_all_anchors_or_a_second_round() {
     assert_eq!(offer(0, 0), Outcome::Collected);
     assert_eq!(offer(0, 1), Outcome::Collected);
     assert_eq!(offer(0, 3), Outcome::Collected);
-    // From here on a position is looked for, in a few steps with each range.
+    // From here on a position is searched for, a few steps with each range.
     let started =
         (1..10).find(|&k| offer(100_000 * k, [3, 0, 1][k as usize % 3]) == Outcome::Started);
     assert!(started.is_some_and(|k| (2..7).contains(&k)), "{started:?}");
@@ -203,7 +203,7 @@ fn the_first_position_waits_for_all_anchors_or_a_second_round() {
 }
 
 fn check_blocked<T: Scalar>() {
-    // From the first range on, and for good: one of five anchors is behind a wall.
+    // Permanently, from the first range on: one of five anchors is behind a wall.
     let places: [[f64; 3]; 5] =
         std::array::from_fn(|k| if k < 4 { CORNERS[k] } else { [4.0, 0.0, 1.5] });
     let mut tracker =
@@ -347,7 +347,7 @@ fn impossible_trackers_are_refused() {
 
 #[test]
 fn a_slow_radio_finds_a_position_among_ranges_that_contradict_each_other() {
-    // A range each 0.4 s, one anchor always behind something.
+    // A range every 0.4 s, one anchor always behind an obstacle.
     let mut found_after = Vec::new();
     for place in 0..25_u32 {
         let tag = [1.0 + 1.5 * f64::from(place % 5), 1.0 + f64::from(place / 5)];

@@ -1,4 +1,4 @@
-//! A robot whose wheels are counted, in every scalar.
+//! A robot with wheel odometry, in every scalar.
 
 use crate::common::{CORNERS, anchors, distance, in_every_scalar, sample};
 use kestirim_scalar::Scalar;
@@ -9,21 +9,21 @@ fn field() -> [[f64; 3]; 4] {
     CORNERS.map(|[x, y, z]| [8.0 * (x - 4.0), 8.0 * (y - 3.0), z])
 }
 
-/// What the radios and the wheels measure instead of what is.
+/// Errors of the radios and the wheels.
 #[derive(Clone, Copy)]
 struct Wrong {
-    /// Ranges are so much longer.
+    /// Relative excess of the ranges.
     excess: f64,
-    /// Speeds and turn rates are multiplied by this.
+    /// Factors of speeds and turn rates.
     speed: f64,
     turn: f64,
-    /// What is missing from the turn rate, rad/s.
+    /// Amount missing from the turn rate, rad/s.
     drift: f64,
 }
 
 const RIGHT: Wrong = Wrong { excess: 0.0, speed: 1.0, turn: 1.0, drift: 0.0 };
 
-/// A robot that drives loops through the field at 1 m/s, two ranges a second.
+/// A robot that drives loops through the field at 1 m/s, with two ranges per second.
 struct Drive<T: Scalar> {
     tracker: WheelTracker<T, 4>,
     place: [f64; 2],
@@ -38,7 +38,7 @@ impl<T: Scalar> Drive<T> {
         Self { tracker, place: [4.0, -12.0], heading: 0.7, step: 0 }
     }
 
-    /// Drives on for so many steps of 0.1 s.
+    /// Drives on for this many steps of 0.1 s.
     fn on(&mut self, steps: u64, wrong: Wrong, with_wheels: bool) {
         for _ in 0..steps {
             self.step += 1;

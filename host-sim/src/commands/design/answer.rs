@@ -1,4 +1,4 @@
-//! The answer to a case.
+//! The answers to cases.
 
 use kestirim_design::{self as design, MOST_STATES, MOST_WIDE, Observed, Solution};
 use nalgebra::DMatrix;
@@ -8,21 +8,21 @@ use serde_json::Value;
 use super::case::{Case, Problem};
 use super::steady::{self, Steady};
 
-/// What was asked, and what came of it.
+/// A case and its answer.
 #[derive(Debug, Clone, Serialize)]
 pub struct Answered {
-    /// The case, as the file names it.
+    /// The identifier of the case, as given in the file.
     pub id: Value,
     /// The answer.
     #[serde(flatten)]
     pub answer: Answer,
-    /// What the case says that nobody asked for.
+    /// The fields of the case that were not used.
     #[serde(skip)]
     pub unused: Vec<String>,
 }
 
 impl Answered {
-    /// Answers a case. What is wrong with it is its answer.
+    /// Answers a case. An error in the case becomes its answer.
     pub(super) fn new(value: &Value, answer: fn(&Case) -> Result<Answer, Problem>) -> Self {
         let id = value.get("id").cloned().unwrap_or_default();
         let mut unused = Vec::new();
@@ -35,7 +35,7 @@ impl Answered {
         Self { id, answer, unused }
     }
 
-    /// The name of the case, for people: whatever it holds, it stays on its line.
+    /// The name of the case for people, escaped so that it stays on one line whatever it holds.
     pub fn name(&self) -> String {
         let name = self.id.as_str().map_or_else(|| self.id.to_string(), str::to_owned);
         let legible = |character: char| !character.escape_debug().to_string().starts_with("\\u");
@@ -49,30 +49,30 @@ impl Answered {
     }
 }
 
-/// A solution, or why there is none.
+/// A solution, or the reason why there is none.
 #[derive(Debug, Clone, Serialize)]
 #[serde(untagged)]
 pub enum Answer {
-    /// What was asked for.
+    /// The requested solution.
     Solved(Solution),
-    /// Steady flights.
+    /// Steady flights at the requested airspeeds.
     Flights {
-        /// One for each airspeed that the aircraft flies at.
+        /// The flights, one for each airspeed at which the aircraft can fly.
         flights: Vec<Steady>,
-        /// Why there is none of the others.
+        /// The reasons why the other airspeeds have no flight.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         refused: Vec<String>,
     },
-    /// Why it was refused.
+    /// The case was refused.
     Refused {
-        /// One sentence.
+        /// The reason, in one sentence.
         error: String,
     },
 }
 
 type Section = (&'static str, fn(&Case) -> Result<Answer, Problem>);
 
-/// The sections of a file, and how their cases are answered.
+/// The sections of a file, each with the function that answers its cases.
 pub(super) const SECTIONS: [Section; 8] = [
     ("pole_placement", placement),
     ("must_reject", placement),
@@ -96,7 +96,8 @@ fn placement(case: &Case) -> Result<Answer, Problem> {
     told(design::place(&a, &c, &case.poles(a.nrows())?, &states))
 }
 
-/// The states that are not measured are observed through what they do to those that are: a pair of its own.
+/// Answers a case of a reduced-order observer: the unmeasured states are observed through their effect on the measured
+/// ones, which gives a pair (A, C) of its own.
 fn reduced_order(case: &Case) -> Result<Answer, Problem> {
     let a = case.square("A", MOST_STATES)?;
     let measured = case.states("measured", a.nrows())?;
@@ -130,8 +131,8 @@ fn discretisation(case: &Case) -> Result<Answer, Problem> {
     told(design::discretise(&a, &b, case.number("h")?))
 }
 
-/// P = F P Fᵀ + B Qu Bᵀ + L R Lᵀ with F = A − L C, or with Q instead of B Qu Bᵀ; where there is no L,
-/// P = A P Aᵀ + Q.
+/// Answers a case of P = F P Fᵀ + B Qu Bᵀ + L R Lᵀ with F = A − L C, or with Q instead of B Qu Bᵀ; without L, of P = A
+/// P Aᵀ + Q.
 fn covariance(case: &Case) -> Result<Answer, Problem> {
     let a = case.square("A", MOST_STATES)?;
     let states = a.nrows();
@@ -151,7 +152,7 @@ fn covariance(case: &Case) -> Result<Answer, Problem> {
     told(design::error_covariance(&Observed { a, c, gain, process, r }))
 }
 
-/// With what is wrong in a sentence.
+/// Converts a design error to a sentence.
 fn told(designed: Result<Solution, design::Error>) -> Result<Answer, Problem> {
     designed.map(Answer::Solved).map_err(|error| error.to_string())
 }

@@ -1,4 +1,4 @@
-//! A case, as it stands in the file.
+//! A case as given in the file.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -6,17 +6,17 @@ use std::collections::BTreeSet;
 use nalgebra::{Complex, DMatrix};
 use serde_json::{Map, Value};
 
-/// What names a case.
+/// The field that identifies a case.
 const NAME: &str = "id";
 
-/// An object. What it holds is looked at when it is asked for.
+/// The fields of a case. Each is validated when it is requested.
 pub(super) struct Case<'a> {
     fields: &'a Map<String, Value>,
     asked: RefCell<BTreeSet<String>>,
     left: RefCell<Vec<String>>,
 }
 
-/// What is wrong with a case, in a sentence.
+/// A sentence that describes what is wrong with a case.
 pub(super) type Problem = String;
 
 impl<'a> Case<'a> {
@@ -25,12 +25,12 @@ impl<'a> Case<'a> {
         Ok(Self { fields, asked: RefCell::default(), left: RefCell::default() })
     }
 
-    /// Notes a part of a field that nobody asks for.
+    /// Records a part of a field as unused.
     pub(super) fn leave(&self, path: &str) {
         self.left.borrow_mut().push(path.to_owned());
     }
 
-    /// What nobody asked for.
+    /// The paths of fields that were not used.
     pub(super) fn unused(&self) -> Vec<String> {
         let asked = self.asked.borrow();
         let is_unused = |name: &&String| !asked.contains(*name) && *name != NAME;
@@ -47,12 +47,12 @@ impl<'a> Case<'a> {
         self.fields.contains_key(name)
     }
 
-    /// A number; null is NaN.
+    /// A number; null is read as NaN.
     pub(super) fn number(&self, name: &str) -> Result<f64, Problem> {
         number(self.field(name)?).ok_or_else(|| format!("{name}: expected a number"))
     }
 
-    /// A list of rows of equal length; null is NaN.
+    /// A list of rows of equal length; null is read as NaN.
     pub(super) fn matrix(&self, name: &str) -> Result<DMatrix<f64>, Problem> {
         let wrong =
             || format!("{name}: expected a list of rows of numbers, all of the same length");
@@ -67,7 +67,7 @@ impl<'a> Case<'a> {
         Ok(DMatrix::from_row_iterator(rows.len(), columns, rows.into_iter().flatten()))
     }
 
-    /// A matrix of which the size is known.
+    /// A matrix of a given size.
     pub(super) fn matrix_of(
         &self,
         name: &str,
@@ -77,7 +77,7 @@ impl<'a> Case<'a> {
         of_size(name, self.matrix(name)?, rows, columns)
     }
 
-    /// A, which is square, with no more states than the program was built for.
+    /// The square state matrix A, with at most as many states as the program was built for.
     pub(super) fn square(&self, name: &str, most: usize) -> Result<DMatrix<f64>, Problem> {
         let matrix = self.matrix(name)?;
         let (rows, columns) = matrix.shape();
@@ -92,7 +92,7 @@ impl<'a> Case<'a> {
         Ok(matrix)
     }
 
-    /// A matrix of as many columns as there are states, with no more outputs than the program was built for.
+    /// A matrix with a column per state, and at most as many outputs (rows) as the program was built for.
     pub(super) fn outputs(
         &self,
         name: &str,
@@ -107,7 +107,7 @@ impl<'a> Case<'a> {
         of_size(name, matrix, outputs, states)
     }
 
-    /// A matrix of as many rows as there are states, with no more inputs than the program was built for.
+    /// A matrix with a row per state, and at most as many inputs (columns) as the program was built for.
     pub(super) fn inputs(
         &self,
         name: &str,
@@ -122,7 +122,7 @@ impl<'a> Case<'a> {
         of_size(name, matrix, states, inputs)
     }
 
-    /// As many poles as there are states: pairs of real and imaginary part, or real numbers.
+    /// The poles, one per state: pairs of real and imaginary part, or real numbers.
     pub(super) fn poles(&self, states: usize) -> Result<Vec<Complex<f64>>, Problem> {
         let wrong = || "poles: expected a list of pairs of numbers".to_owned();
         let pole = |value: &Value| match value.as_array().map(Vec::as_slice) {
@@ -141,7 +141,7 @@ impl<'a> Case<'a> {
         Ok(poles)
     }
 
-    /// Which states, counted from 0.
+    /// Indices of states, counted from 0.
     pub(super) fn states(&self, name: &str, count: usize) -> Result<Vec<usize>, Problem> {
         let wrong = || {
             format!("{name}: expected a list of different states, counted from 0, below {count}")

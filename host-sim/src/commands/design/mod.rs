@@ -1,4 +1,4 @@
-//! `host-sim design`: the gains, discretisations, covariances and steady flights of a file of cases.
+//! `host-sim design`: computes the gains, discretisations, covariances and steady flights of a file of cases.
 
 mod answer;
 mod case;
@@ -33,10 +33,10 @@ pub struct Design {
 }
 
 impl Design {
-    /// Reads, designs, writes and prints.
+    /// Reads the cases, designs, writes the constants and prints the report.
     ///
     /// # Errors
-    /// Whatever is wrong with the file as a whole; what is wrong with a case is that case's answer.
+    /// Errors in the file as a whole; an error in a case becomes that case's answer.
     pub fn run(&self) -> Result<(), Error> {
         output::refuse_overwriting("--rust", self.rust.as_deref(), [&self.input])?;
         let report = answers(&self.input)?;
@@ -56,7 +56,7 @@ impl Design {
 /// The answers to a file of cases.
 ///
 /// # Errors
-/// [`Error::Read`], [`Error::Line`] or [`Error::File`] if the file is none of cases.
+/// [`Error::Read`], [`Error::Line`] or [`Error::File`] if the file does not hold cases.
 pub fn answers(path: &Path) -> Result<Report, Error> {
     let file = TextFile::read(path)?;
     let cases: Map<String, Value> = file.json("a JSON object of cases")?;

@@ -1,4 +1,4 @@
-//! What `host-sim design` prints.
+//! The report that `host-sim design` prints.
 
 use std::fmt;
 
@@ -10,15 +10,15 @@ use super::answer::{Answer, Answered};
 use super::steady::{Steady, Trim};
 use crate::output;
 
-/// The answers, section by section, in the order of the program.
+/// The answers by section, in the order of the program.
 #[derive(Debug, Clone)]
 pub struct Report {
-    /// Name and answers of each section that the file has.
+    /// The name and the answers of each section present in the file.
     pub sections: Vec<(&'static str, Vec<Answered>)>,
 }
 
 impl Report {
-    /// What a user should know beside the answers.
+    /// Warnings for the user beside the answers.
     pub(super) fn warnings(&self) -> Vec<String> {
         let answers = || self.sections.iter().flat_map(|(_, answers)| answers);
         let unused = answers().filter(|answered| !answered.unused.is_empty());

@@ -90,7 +90,7 @@ fn write_constant(
     writeln!(file, "];")
 }
 
-/// Letters, digits and underscores of a text, in capitals.
+/// Converts a text to an identifier of capital letters, digits and underscores.
 fn constant_case(id: &str) -> String {
     let mut name = String::new();
     for character in id.chars() {
@@ -108,7 +108,7 @@ fn constant_case(id: &str) -> String {
     }
 }
 
-/// The name, with a number if it was taken.
+/// The name, with a number appended if it was already used.
 fn unique(name: &str, used: &mut BTreeSet<String>) -> String {
     let numbered = (2..).map(|count| format!("{name}_{count}"));
     let free = std::iter::once(name.to_owned()).chain(numbered).find(|name| !used.contains(name));

@@ -1,4 +1,4 @@
-//! Steady flights of an aircraft of which the coefficients are published, and what it does near them.
+//! Steady flights of an aircraft with published coefficients, and the linear models near them.
 
 use kestirim_replay::KnownAirframe;
 use kestirim_uav_longitudinal::{Airframe, SteadyFlight};
@@ -7,46 +7,46 @@ use serde_json::Value;
 
 use super::case::{Case, Problem};
 
-/// A steady flight: states α, q, V, θ and inputs δe, δt, and deviations from them ẋ = A·x + B·u.
+/// A steady flight with states α, q, V, θ and inputs δe, δt, and the linear model ẋ = A·x + B·u of deviations from it.
 #[derive(Debug, Clone, Serialize)]
 pub struct Steady {
-    /// As asked, m/s.
+    /// The requested airspeed (m/s).
     pub airspeed: f64,
-    /// As asked, rad.
+    /// The requested climb angle (rad).
     pub climb_angle: f64,
-    /// State and input.
+    /// The states, inputs and outputs in the flight.
     pub trim: Trim,
-    /// A.
+    /// The system matrix A.
     #[serde(rename = "A")]
     pub a: [[f64; 4]; 4],
-    /// B.
+    /// The input matrix B.
     #[serde(rename = "B")]
     pub b: [[f64; 2]; 4],
-    /// C of an accelerometer's axes forwards and down.
+    /// The output matrix C of an accelerometer with its axes forwards and down.
     #[serde(rename = "C")]
     pub c: [[f64; 4]; 2],
-    /// D of the same.
+    /// The feedthrough matrix D of an accelerometer with its axes forwards and down.
     #[serde(rename = "D")]
     pub d: [[f64; 2]; 2],
-    /// Real and imaginary parts, 1/s.
+    /// The real and imaginary parts of the eigenvalues (1/s).
     pub eigenvalues: Vec<[f64; 2]>,
 }
 
-/// What holds in the flight.
+/// The equilibrium values of a steady flight.
 #[derive(Debug, Clone, Serialize)]
 pub struct Trim {
-    /// State.
+    /// The state vector.
     pub x: [f64; 4],
-    /// Input.
+    /// The input vector.
     pub u: [f64; 2],
-    /// Specific force forwards and down, m/s².
+    /// The specific force forwards and down (m/s²).
     pub y: [f64; 2],
 }
 
-/// A flight for each airspeed of a case, which is a number or a list; and why there is none of others.
+/// The steady flights at the airspeeds of a case, a number or a list, and the reasons why some airspeeds have none.
 ///
 /// # Errors
-/// What is wrong with the case, or with the first of the airspeeds if the aircraft flies at none of them.
+/// An error in the case, or that of the first airspeed if the aircraft flies at none of them.
 pub(super) fn flights(case: &Case) -> Result<(Vec<Steady>, Vec<Problem>), Problem> {
     let airframe = match (case.has("coefficients"), case.has("airframe")) {
         (true, true) => return Err("expected airframe or coefficients, found both".to_owned()),

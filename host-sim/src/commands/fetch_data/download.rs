@@ -1,4 +1,5 @@
-//! One file, fetched by the program that every machine has for that: no encryption is built into this one.
+//! Downloads of single files by an external program that every machine has, so that this program needs no encryption of
+//! its own.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -10,16 +11,16 @@ use sha2::{Digest, Sha256};
 use crate::text::bytes;
 use crate::{Error, output};
 
-/// Seconds until a server has to answer, and in which something has to come.
+/// The timeout in seconds for connecting to a server, and for a transfer without progress.
 const PATIENCE_S: &str = "30";
 
-/// Fetches a file, checks it and gives it its name; whatever goes wrong leaves what was there.
+/// Downloads a file, verifies its checksum and moves it to its path; on any error the existing file is kept.
 pub(super) fn fetch(from: &str, packed: bool, path: &Path, sha256: &str) -> Result<(), Error> {
     let failed = |problem: String| Error::File { path: path.to_path_buf(), problem };
     let written = |source| Error::Write { path: path.to_path_buf(), source };
     let folder = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(folder).map_err(written)?;
-    // Beside its name: the disk that it is meant for has room for it, or has not.
+    // The draft is in the same folder, so that it is on the target disk from the start.
     let draft = tempfile::NamedTempFile::new_in(folder).map_err(written)?;
     download(from, draft.path()).map_err(|problem| failed(format!("{from}: {problem}")))?;
     let contents = if packed { pack(draft.path()).map_err(failed)? } else { bytes(draft.path())? };
@@ -37,13 +38,13 @@ pub(super) fn sum(path: &Path) -> Result<String, Error> {
 
 fn hexadecimal(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
-        // Into memory.
+        // Writing to a string does not fail.
         let _ = write!(text, "{byte:02x}");
         text
     })
 }
 
-/// By curl, or where that is not by wget. Only web addresses are followed, wherever a server points to.
+/// Downloads with curl, or with wget if there is no curl. Redirects are followed to web addresses only.
 fn download(from: &str, to: &Path) -> Result<(), String> {
     let mut curl = Command::new("curl");
     curl.args(["--fail", "--silent", "--show-error", "--location", "--proto", "=http,https"]);
@@ -53,7 +54,7 @@ fn download(from: &str, to: &Path) -> Result<(), String> {
     wget.args(["--no-verbose", "--tries", "1", "--timeout", PATIENCE_S, "--output-document"]);
     wget.arg(to).args(["--", from]);
     for mut program in [curl, wget] {
-        // What is not installed does not start.
+        // A program that is not installed does not start.
         if let Ok(output) = program.output() {
             return said(&output).map(drop);
         }
@@ -61,7 +62,7 @@ fn download(from: &str, to: &Path) -> Result<(), String> {
     Err("expected curl or wget, found neither".to_owned())
 }
 
-/// As `gzip -9n` packs it: without time and name, so that the same contents are the same bytes.
+/// Compresses like `gzip -9n`: without time and name, so that the same contents give the same bytes.
 fn pack(path: &Path) -> Result<Vec<u8>, String> {
     let output = Command::new("gzip").args(["-9", "-n", "-c"]).arg(path).output();
     let output = output.map_err(|error| format!("gzip does not start: {error}"))?;
@@ -69,7 +70,7 @@ fn pack(path: &Path) -> Result<Vec<u8>, String> {
     Ok(output.stdout)
 }
 
-/// The last line of what a program says if it fails.
+/// The last line of a program's error output if it failed.
 fn said(output: &Output) -> Result<(), String> {
     if output.status.success() {
         return Ok(());

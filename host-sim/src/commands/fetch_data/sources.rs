@@ -1,4 +1,4 @@
-//! The list of recordings: where each file is from, what it should be, and what is asked of who uses it.
+//! The list of recordings: the origin of each file, its checksum, and the obligations of its users.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use serde::Deserialize;
 use crate::Error;
 use crate::text::bytes;
 
-/// The program's own list.
+/// The built-in list.
 const OWN: &str = include_str!("../../../data/sources.csv");
 
 /// A line of the list.
@@ -21,31 +21,31 @@ struct Line {
     licence: String,
 }
 
-/// A file, or a folder of files that are not passed on.
+/// A file, or a folder of files that are not redistributed.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Source {
-    /// Below the folder of recordings.
+    /// The path below the folder of recordings.
     pub(super) path: String,
-    /// Of the file in the folder, in small hexadecimal digits; empty of what is not passed on.
+    /// The SHA-256 of the file in lower-case hexadecimal digits; empty if the file is not redistributed.
     pub(super) sha256: String,
     pub(super) origin: Origin,
-    /// Licence and citation.
+    /// The licence and the citation.
     pub(super) licence: String,
 }
 
-/// How a file is come by.
+/// How a file is obtained.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Origin {
-    /// As its publisher has it, or that packed by `gzip -9n`.
+    /// The file as published, or that compressed by `gzip -9n`.
     Published { address: String, packed: bool },
-    /// Made of what its publisher has.
+    /// The file is made from a published one.
     Converted { from: String, how: String },
-    /// Not to be passed on.
+    /// The file may not be redistributed.
     Kept { reason: String },
 }
 
 impl Source {
-    /// Whether it is this file, or lies in this folder, named whole or by its last part.
+    /// Whether the source is this file or lies in this folder, which may be named by its last component only.
     pub(super) fn is_in(&self, name: &str) -> bool {
         let name = name.trim_end_matches('/');
         let folder = self.folder();
@@ -53,7 +53,7 @@ impl Source {
         self.path == name || self.path.starts_with(&format!("{name}/")) || last == Some(name)
     }
 
-    /// The folder that it lies in, or is.
+    /// The folder that the source lies in, or is.
     pub(super) fn folder(&self) -> &str {
         match (&self.origin, self.path.rsplit_once('/')) {
             (Origin::Published { .. } | Origin::Converted { .. }, Some((folder, _))) => folder,
@@ -62,12 +62,12 @@ impl Source {
     }
 }
 
-/// The program's own list.
+/// Parses the built-in list.
 pub(super) fn own() -> Result<Vec<Source>, Error> {
     parse(OWN.as_bytes(), Path::new("sources.csv"))
 }
 
-/// A list from a file.
+/// Reads a list from a file.
 pub(super) fn read(path: &Path) -> Result<Vec<Source>, Error> {
     parse(&bytes(path)?, path)
 }
@@ -88,7 +88,7 @@ fn parse(text: &[u8], path: &Path) -> Result<Vec<Source>, Error> {
     Ok(sources)
 }
 
-/// A line, or what was expected in it.
+/// Parses a line of the list; the error says what was expected in it.
 fn source(line: Line) -> Result<Source, String> {
     let Line { path, sha256, how, source: from, note, licence } = line;
     let leaves = path.is_empty() || path.split('/').any(|part| ["", ".", ".."].contains(&part));

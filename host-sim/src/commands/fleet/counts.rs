@@ -1,30 +1,30 @@
-//! What became of everything.
+//! Counters of the fleet.
 
 use serde::{Deserialize, Serialize};
 
-/// What became of a device's frames, or of all.
+/// What happened to the frames of a device, or of all devices.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Counts {
-    /// Frames that were followed.
+    /// Frames that were processed.
     pub(super) frames: u64,
-    /// Numbers that did not come.
+    /// Missing sequence numbers.
     pub(super) lost: u64,
-    /// Frames that came twice, or behind later ones.
+    /// Frames that were duplicates or arrived behind later ones.
     pub(super) dropped: u64,
     /// Frames of another sender with the same device number, or of one that does not count its boots.
     pub(super) another: u64,
-    /// Measurements that the estimators took in.
+    /// Measurements that the estimators used.
     pub(super) taken: u64,
-    /// Measurements that they refused.
+    /// Measurements that the estimators refused.
     pub(super) refused: u64,
-    /// How often the devices were switched on again.
+    /// The number of times that devices were switched on again.
     pub(super) restarts: u64,
-    /// Estimates that were made.
+    /// Estimates that were produced.
     pub(super) estimates: u64,
 }
 
 impl Counts {
-    /// Names and numbers, for those who read.
+    /// The metric name, description and value of each counter.
     pub(super) fn named(&self) -> [(&'static str, &'static str, u64); 8] {
         [
             ("frames", "Frames that were followed", self.frames),
@@ -38,7 +38,7 @@ impl Counts {
         ]
     }
 
-    /// With those of another.
+    /// Adds the counts of another.
     pub(super) fn add(&mut self, other: &Self) {
         self.frames += other.frames;
         self.lost += other.lost;

@@ -1,8 +1,8 @@
-//! From messages to estimates, such that a kill at any moment loses nothing and makes nothing twice.
+//! The path from messages to estimates: killing the program at any moment loses nothing and duplicates nothing.
 //!
-//! Estimates are stored by the broker first, then the states with the position in the log by this program, and only then is
-//! the log told. Whatever is killed, whatever was made since the last states is made again, to the bit, and the
-//! broker knows it by its id.
+//! Estimates are stored by the broker first, then the states with the position in the log by this program, and only
+//! then is the log acknowledged. After a kill, everything since the last stored states is computed again, bit for bit,
+//! and the broker recognises the estimates by their ids.
 
 use std::time::{Duration, Instant};
 
@@ -11,26 +11,26 @@ use super::store::Store;
 use super::transport::Transport;
 use crate::Error;
 
-/// Follows a fleet.
+/// The engine that follows a fleet.
 #[derive(Debug)]
 pub(super) struct Engine {
     pub(super) fleet: Fleet,
     pub(super) store: Store,
     pub(super) transport: Box<dyn Transport>,
-    /// Between two times that states are written.
+    /// The interval between two writes of the states.
     every: Duration,
     written: Instant,
-    /// Up to where the log was told.
+    /// The position up to which the log is acknowledged.
     pub(super) acknowledged: u64,
-    /// How long it took to write the states the last time, s.
+    /// The duration of the last write of the states, in seconds.
     pub(super) writing_s: f64,
 }
 
 impl Engine {
-    /// Goes on where the states end.
+    /// Resumes where the stored states end.
     ///
     /// # Errors
-    /// As [`Transport::resume`].
+    /// Those of [`Transport::resume`].
     pub(super) fn begin(
         fleet: Fleet,
         store: Store,
@@ -43,10 +43,10 @@ impl Engine {
         Ok(Self { fleet, store, transport, every, written, acknowledged, writing_s: 0.0 })
     }
 
-    /// Follows what came meanwhile; how many messages.
+    /// Processes the messages that have arrived and returns their number.
     ///
     /// # Errors
-    /// What waiting does not mend.
+    /// An error from which waiting does not recover.
     pub(super) fn step(&mut self) -> Result<usize, Error> {
         let deliveries = self.transport.receive()?;
         let estimates = self.fleet.take(&deliveries)?;
@@ -57,10 +57,10 @@ impl Engine {
         Ok(deliveries.len())
     }
 
-    /// Writes the states, and tells the log.
+    /// Writes the states and acknowledges the log.
     ///
     /// # Errors
-    /// As [`Store::write`] and [`Transport::acknowledge`].
+    /// Those of [`Store::write`] and [`Transport::acknowledge`].
     pub(super) fn settle(&mut self) -> Result<(), Error> {
         self.written = Instant::now();
         let position = self.fleet.keyed.position;

@@ -1,7 +1,7 @@
-//! A state for each device: bytes, which an estimator wakes from and goes back to.
+//! The state of each device as bytes, from which one estimator is restored and to which it is saved.
 //!
-//! An estimator with room for any number of anchors takes ten times the bytes of its snapshot. And what is stored at any
-//! moment is what a restart begins with: there is no other state.
+//! An estimator with room for any number of anchors takes ten times the bytes of its snapshot. And the stored states
+//! are exactly what a restart begins with: there is no other state.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -15,44 +15,44 @@ use crate::Error;
 use crate::numbers::{Numbers, Place};
 use crate::system::{Online, Outcome, Plan};
 
-/// More devices are not followed: a sender may invent them.
+/// The maximum number of devices, as a sender may invent device numbers.
 const MOST: usize = 1_000_000;
 
-/// What is known of a device.
+/// The state of a device.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Device {
     numbers: Numbers,
     pub(super) counts: Counts,
-    /// The estimator's snapshot; empty before it has begun.
+    /// The estimator's snapshot; empty before it has started.
     state: Vec<u8>,
 }
 
-/// All devices, and how far the log was read for them.
+/// All devices, and the position up to which the log was read for them.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Keyed {
-    /// Of the last message that was followed.
+    /// The position of the last message that was processed.
     pub(super) position: u64,
     pub(super) devices: BTreeMap<u32, Device>,
-    /// Messages that held no frame of a device, or pieces of some, or of devices that were too many.
+    /// The number of messages without a frame of a device, with torn frames, or of devices beyond the maximum.
     pub(super) unreadable: u64,
 }
 
-/// Follows all devices with one estimator, which is one device's after the other.
+/// Processes all devices with a single estimator, which takes the state of one after the other.
 #[derive(Debug)]
 pub(super) struct Fleet {
     pub(super) keyed: Keyed,
-    /// The system's: estimates of two may go to one stream.
+    /// The name of the system, as estimates of two systems may go to one stream.
     name: String,
     online: Box<dyn Online>,
-    /// The snapshot of an estimator that has not begun.
+    /// The snapshot of an estimator that has not started.
     pub(super) fresh: Vec<u8>,
 }
 
 impl Fleet {
-    /// Without devices.
+    /// A fleet without devices.
     ///
     /// # Errors
-    /// Whatever is wrong with settings and files; [`Error::Usage`] if the estimator cannot be stored.
+    /// Errors in settings and files; [`Error::Usage`] if the estimator cannot be stored.
     pub(super) fn new(name: &str, plan: &Arc<dyn Plan>) -> Result<Self, Error> {
         let mut online = plan.build()?;
         let refused = |why| Error::Usage(format!("fleet {name}: {why}"));
@@ -62,12 +62,12 @@ impl Fleet {
         Ok(Self { keyed: Keyed::default(), name: name.to_owned(), online, fresh })
     }
 
-    /// Follows what came; the estimates after it, of each device in their order.
+    /// Processes the deliveries and returns the estimates that follow from them, in order for each device.
     ///
     /// # Errors
-    /// If a device's snapshot is none, which cannot be.
+    /// If a device's snapshot is invalid, which cannot happen.
     pub(super) fn take(&mut self, deliveries: &[Delivery]) -> Result<Vec<Estimate>, Error> {
-        // An estimator wakes once for all that came of a device.
+        // The estimator is restored once for all frames of a device.
         let mut heard = BTreeMap::<u32, Vec<Heard>>::new();
         for delivery in deliveries {
             self.keyed.position = delivery.position;
@@ -83,14 +83,14 @@ impl Fleet {
     fn hear(&mut self, bytes: &[u8], heard: &mut BTreeMap<u32, Vec<Heard>>) {
         let mut receiver = Receiver::new();
         let mut frames: Vec<_> = receiver.frames(bytes).collect();
-        // A frame that only lacks its end is whole; any other piece of one is torn.
+        // A frame that only lacks its end is complete; any other fragment is torn.
         frames.extend(receiver.push(0));
         let kestirim_telemetry::Counts { torn, corrupt, unknown, .. } = receiver.counts();
         let is_readable = torn + corrupt + unknown == 0
             && !frames.is_empty()
             && frames.iter().all(|frame| frame.origin.is_some());
         self.keyed.unreadable += u64::from(!is_readable);
-        // From the last to the first: the first of a device that is met is its last one in this message.
+        // Backwards: the first frame met of a device is its last one in this message.
         let mut ended = BTreeSet::new();
         let mut of_message = Vec::with_capacity(frames.len());
         for frame in frames.into_iter().rev() {
@@ -151,14 +151,15 @@ impl Fleet {
         Ok(())
     }
 
-    /// The first frame of a new device that the estimator takes, or behind the last: others give it no place.
+    /// The index of the first frame of a new device that the estimator uses, or the number of frames if there is none:
+    /// other frames do not register a device.
     fn begun(&mut self, frames: &[Heard]) -> Result<usize, Error> {
         if self.keyed.devices.len() >= MOST {
             self.keyed.unreadable += 1;
             return Ok(frames.len());
         }
         for (place, Heard { frame, .. }) in frames.iter().enumerate() {
-            // Anew for each, as if it came alone: what is refused leaves no trace.
+            // The estimator is fresh for each frame, as if it came alone: a refused frame leaves no trace.
             wake(self.online.as_mut(), &self.fresh)?;
             if self.online.take(&frame.message) == Outcome::Taken {
                 return Ok(place);
@@ -167,31 +168,31 @@ impl Fleet {
         Ok(frames.len())
     }
 
-    /// What became of everything.
+    /// The sum of all devices' counters.
     pub(super) fn counts(&self) -> Counts {
         let mut all = Counts::default();
         self.keyed.devices.values().for_each(|device| all.add(&device.counts));
         all
     }
 
-    /// Bytes that the devices take.
+    /// The memory of all devices' states in bytes.
     pub(super) fn bytes(&self) -> usize {
         let of = |device: &Device| device.state.capacity() + size_of::<(u32, Device)>();
         self.keyed.devices.values().map(of).sum()
     }
 }
 
-/// A frame of a message.
+/// A frame received in a message.
 #[derive(Debug)]
 struct Heard {
     origin: Origin,
     frame: Frame,
-    /// Whether it is the message's last of this device: after it there is an estimate.
+    /// Whether it is the message's last frame of this device, after which an estimate is produced.
     is_last: bool,
 }
 
 impl Place {
-    /// Whether a frame is followed: it is newer than all before. What became of it is counted.
+    /// Whether a frame is processed, which it is if it is newer than all before. The counters are updated.
     fn is_followed(self, counts: &mut Counts) -> bool {
         match self {
             Self::Newest { missing } => counts.lost += u64::from(missing),
@@ -199,7 +200,7 @@ impl Place {
                 counts.lost += u64::from(missing);
                 counts.restarts += 1;
             }
-            // The log has an order: what is behind it was read before, or was put into it late.
+            // The log is ordered: an older frame was read before, or was put into the log late.
             Self::Late { .. } | Self::Twice => {
                 counts.dropped += 1;
                 return false;
@@ -219,7 +220,7 @@ fn wake(online: &mut dyn Online, state: &[u8]) -> Result<(), Error> {
     online.restore(state).ok_or_else(refused)
 }
 
-/// Where the estimator is after a frame, as a frame; nothing before it knows that.
+/// The estimate after a frame, as a frame; `None` if the estimator does not know the position yet.
 fn estimate(name: &str, online: &dyn Online, origin: Origin, frame: &Frame) -> Option<Estimate> {
     let time_us = frame.message.measured_us()?;
     let position = online.position()?.map(|metres| metres as f32);

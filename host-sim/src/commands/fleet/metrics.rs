@@ -1,4 +1,4 @@
-//! What is happening, as Prometheus reads it.
+//! Metrics in the text format of Prometheus.
 
 use std::fmt::Write;
 use std::net::SocketAddr;
@@ -13,10 +13,10 @@ use tokio::runtime::Runtime;
 use super::engine::Engine;
 use crate::Error;
 
-/// The text format's name.
+/// The content type of the text format.
 const FORMAT: &str = "text/plain; version=0.0.4";
 
-/// A page that is asked for again and again; it ends with this.
+/// A metrics page; it is served until this is dropped.
 #[derive(Debug)]
 pub(super) struct Metrics {
     text: Arc<Mutex<String>>,
@@ -25,10 +25,10 @@ pub(super) struct Metrics {
 }
 
 impl Metrics {
-    /// Answers at this address.
+    /// Serves the page at this address.
     ///
     /// # Errors
-    /// [`Error::Usage`] if it cannot be had.
+    /// [`Error::Usage`] if the address is not available.
     pub(super) fn serve(address: SocketAddr) -> Result<Self, Error> {
         let failed = |error: std::io::Error| Error::Usage(format!("--metrics {address}: {error}"));
         let mut builder = tokio::runtime::Builder::new_multi_thread();
@@ -46,18 +46,18 @@ impl Metrics {
         Ok(Self { text, address, _runtime: runtime })
     }
 
-    /// Where it is.
+    /// The URL of the page.
     pub(super) fn address(&self) -> String {
         format!("http://{}/metrics", self.address)
     }
 
-    /// Shows how it is now.
+    /// Updates the page to the present state.
     pub(super) fn show(&self, engine: &Engine) {
         *self.text.lock().unwrap_or_else(PoisonError::into_inner) = text(engine);
     }
 }
 
-/// All numbers, each with what it is.
+/// All metrics, each with its description.
 fn text(engine: &Engine) -> String {
     let fleet = &engine.fleet;
     let (counts, keyed) = (fleet.counts(), &fleet.keyed);

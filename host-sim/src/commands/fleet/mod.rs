@@ -1,4 +1,4 @@
-//! `host-sim fleet`: an estimator a device, for any number of devices, behind a broker.
+//! `host-sim fleet`: an estimator per device, for any number of devices, behind a broker.
 //!
 //! `transport` (`nats`, `udp`) → `engine` → `keyed` → [`Online`](crate::system::Online); states go to `store`.
 
@@ -34,10 +34,10 @@ use super::live::options::given;
 use crate::text::printable_path;
 use crate::{Error, output};
 
-/// Between two times that metrics are renewed: nobody asks more often.
+/// The interval at which the metrics are updated: they are not requested more often.
 const BEAT: Duration = Duration::from_secs(1);
 
-/// Follows a fleet until somebody ends it.
+/// Follows a fleet until the program is interrupted.
 pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     let (system, matches) = chosen(matches)?;
     let options = read::<Options>(matches)?;
@@ -59,7 +59,7 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
         output::warn(&format!("metrics: {}", metrics.address()));
     }
     let ended = Arc::clone(&stop);
-    // Without it Ctrl-C ends the program at once: it goes on where its states end even so.
+    // Without a handler Ctrl-C ends the program at once: even so the next run resumes from the stored states.
     let _ = ctrlc::set_handler(move || ended.store(true, Ordering::Relaxed));
     let mut engine = Engine::begin(fleet, store, transport, options.every())?;
     let (messages, seconds) = follow(&mut engine, metrics.as_ref(), &stop, until)?;
@@ -70,7 +70,7 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     output::show(&report, options.json)
 }
 
-/// How many messages came, and in how many seconds.
+/// Follows the fleet and returns the number of messages and the duration in seconds.
 fn follow(
     engine: &mut Engine,
     metrics: Option<&Metrics>,

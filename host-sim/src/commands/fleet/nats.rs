@@ -1,7 +1,8 @@
-//! NATS with its streams, `JetStream`: one stream of frames, and one of estimates.
+//! Transport over NATS `JetStream`: one stream of frames, and one of estimates.
 //!
-//! The order of the stream is kept whatever happens: a consumer that the broker forgot, that skipped what was on its way
-//! when the connection broke, or that is another run's, is made anew behind the last message that was followed.
+//! The order of the stream is kept under all circumstances: a consumer that the broker has forgotten, that skipped
+//! messages in flight when the connection broke, or that belongs to another run, is created anew after the last message
+//! that was processed.
 
 use std::future::IntoFuture;
 use std::sync::Arc;
@@ -21,29 +22,31 @@ use super::silence::Silence;
 use super::transport::{Delivery, Estimate, Log, Transport};
 use crate::{Error, output};
 
-/// So long messages are waited for until what came is followed.
+/// How long messages are awaited before those that have arrived are processed.
 const PATIENCE: Duration = Duration::from_millis(100);
-/// Messages that are followed together.
+/// The maximum number of messages processed together.
 const BATCH: usize = 2000;
-/// Bytes of them, and one message more of the longest that the broker takes.
+/// The maximum size of the messages processed together, in bytes, apart from one more message of the broker's maximum
+/// size.
 const BATCH_BYTES: usize = 1 << 24;
-/// Until a broker that does not answer is asked again.
+/// The time after which a broker that does not answer is asked again.
 const SILENCE: Duration = Duration::from_secs(2);
 const PAUSE: Duration = Duration::from_millis(200);
-/// So long after a message the end of what was asked for is waited for: a busy broker of version 2.9 may not tell it.
+/// How long after a message the end of a request is awaited: a busy broker of version 2.9 may not send it.
 const LATE: Duration = Duration::from_millis(500);
-/// So long the broker knows the ids of estimates: no restart may take longer.
+/// How long the broker remembers the ids of estimates: no restart may take longer.
 const KNOWN: Duration = Duration::from_secs(600);
 
-/// What is read and written where.
+/// The names of streams, subjects and the consumer.
 #[derive(Debug, Clone)]
 pub(super) struct Names {
-    /// The stream of frames, which is made if it is not there, and the subjects of those that are followed here.
+    /// The stream of frames, which is created if it does not exist, and the subjects of the frames followed here.
     pub(super) stream: String,
     pub(super) subject: String,
-    /// The stream of estimates, made likewise; a device's subject is this name and its number.
+    /// The stream of estimates, which is created if it does not exist; a device's subject is this name followed by its
+    /// number.
     pub(super) estimates: String,
-    /// Whoever reads the same subjects has the same.
+    /// The name of the consumer, shared by all that read the same subjects.
     pub(super) consumer: String,
 }
 
@@ -53,29 +56,29 @@ pub(super) struct Nats {
     runtime: Runtime,
     context: Context,
     names: Names,
-    /// Bytes that are asked for at once.
+    /// The number of bytes requested at once.
     most_bytes: usize,
-    /// When the stream of frames was made.
+    /// The creation time of the stream of frames.
     created: String,
     consumer: Option<PullConsumer>,
-    /// Messages that this consumer has delivered.
+    /// The number of messages that this consumer has delivered.
     delivered: u64,
-    /// The last message of the log that was delivered.
+    /// The position of the last message delivered.
     position: u64,
     last: Option<Message>,
     lag: Option<u64>,
-    /// Whether the stream was deleted and made anew meanwhile.
+    /// Whether the stream was meanwhile deleted and created again.
     is_another: bool,
     silence: Silence,
-    /// Nobody wants to wait any longer, or longer than until then.
+    /// The signal, and the optional time, at which waiting ends.
     stop: (Arc<AtomicBool>, Option<Instant>),
 }
 
 impl Nats {
-    /// Connects, and makes the streams that are not there.
+    /// Connects to the broker and creates the streams that do not exist.
     ///
     /// # Errors
-    /// [`Error::Usage`] with what the broker says.
+    /// [`Error::Usage`] with the broker's message.
     pub(super) fn connect(
         url: &str,
         names: Names,
@@ -124,7 +127,7 @@ impl Nats {
         })
     }
 
-    /// A consumer that begins behind the last message that was followed.
+    /// Creates a consumer that begins after the last message that was processed.
     async fn begin(&mut self) -> Result<(), async_nats::Error> {
         let Names { stream, subject, consumer: name, .. } = &self.names;
         let stream = self.context.get_stream(stream).await?;
@@ -132,7 +135,7 @@ impl Nats {
         if self.is_another {
             return Err("another stream".into());
         }
-        // It may not be there.
+        // The consumer may not exist.
         let _ = stream.delete_consumer(name).await;
         let config = pull::Config {
             durable_name: Some(name.clone()),
@@ -147,7 +150,7 @@ impl Nats {
         Ok(())
     }
 
-    /// What came meanwhile. Anything unusual, and the consumer is made anew.
+    /// Fetches the messages that have arrived. After any irregularity the consumer is created anew.
     async fn fetch(&mut self) -> Result<Vec<Delivery>, async_nats::Error> {
         if self.consumer.is_none() {
             self.begin().await?;
@@ -161,17 +164,17 @@ impl Nats {
             let message = match timeout(wait, messages.next()).await {
                 Err(silent) if deliveries.is_empty() => return Err(silent.into()),
                 Err(_) | Ok(None) => break,
-                // The next one is beyond the bytes that were asked for.
+                // The next message exceeds the number of bytes requested.
                 Ok(Some(Err(error))) if error.to_string().contains("MaxBytes") => break,
                 Ok(Some(message)) => message?,
             };
             let info = message.info()?;
             self.delivered += 1;
             if info.consumer_sequence != self.delivered {
-                // What is missing was on its way when the connection broke.
+                // Missing messages were in flight when the connection broke.
                 return Ok(deliveries);
             }
-            // What was not acknowledged in time comes again.
+            // Messages that were not acknowledged in time are delivered again.
             if info.stream_sequence > self.position {
                 self.position = info.stream_sequence;
                 self.lag = Some(info.pending);
@@ -184,7 +187,7 @@ impl Nats {
         Ok(deliveries)
     }
 
-    /// Offers estimates to the broker; those that it has not confirmed are left.
+    /// Offers estimates to the broker and returns those that it has not confirmed.
     async fn offer<'a>(
         context: &Context,
         subject: &str,
@@ -196,13 +199,13 @@ impl Nats {
             let publish = PublishMessage::build().message_id(&estimate.id).payload(payload);
             let subject = format!("{subject}.{}", estimate.device);
             let Ok(confirmed) = context.send_publish(subject, publish).await else {
-                // Nor would it take the next ones, each after a while.
+                // The broker would not accept the next ones either, each only after a timeout.
                 left.extend(all.iter().skip(place));
                 break;
             };
             offered.push((estimate, confirmed));
         }
-        // Together: a broker that is silent is waited for once.
+        // All confirmations are awaited together, so that a silent broker costs a single timeout.
         let confirmed = offered.into_iter().map(|(estimate, confirmed)| async move {
             confirmed.into_future().await.is_err().then_some(estimate)
         });
@@ -211,7 +214,7 @@ impl Nats {
     }
 }
 
-/// Whether a stream that was there before knows the ids of its messages as long as is needed.
+/// Whether a stream that already existed remembers the ids of its messages long enough.
 fn knows_long_enough(config: &stream::Config) -> Result<(), String> {
     let (name, found) = (&config.name, config.duplicate_window);
     if found >= KNOWN {
@@ -248,7 +251,7 @@ impl Transport for Nats {
                 )));
             }
             Err(error) => {
-                // What was received of it is asked for again.
+                // The messages received from it are requested again.
                 (self.position, self.consumer) = (before, None);
                 sleep(PAUSE);
                 (Vec::new(), Some(error.to_string()))
@@ -266,7 +269,7 @@ impl Transport for Nats {
         let mut left: Vec<_> = estimates.iter().collect();
         let (context, subject) = (&self.context, &self.names.estimates);
         loop {
-            // One that was not confirmed may be stored behind later ones: its number tells where it stands.
+            // An unconfirmed estimate may be stored behind later ones: its sequence number tells the order.
             left = self.runtime.block_on(Self::offer(context, subject, &left));
             if left.is_empty() {
                 return Ok(());
@@ -283,7 +286,7 @@ impl Transport for Nats {
     fn acknowledge(&mut self, position: u64) -> Result<(), Error> {
         if let Some(message) = self.last.take() {
             let is_it = message.info().is_ok_and(|info| info.stream_sequence == position);
-            // If it is lost, the next one acknowledges this one, too; and nobody goes by it but who looks at the broker.
+            // A lost acknowledgement is covered by the next one; it only matters to people who look at the broker.
             let _ = is_it.then(|| self.runtime.block_on(message.ack()));
         }
         Ok(())

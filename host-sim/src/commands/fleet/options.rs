@@ -1,4 +1,4 @@
-//! What the command line of `host-sim fleet` can choose.
+//! The options of `host-sim fleet`.
 
 use std::fmt::Write;
 use std::net::SocketAddr;
@@ -16,7 +16,7 @@ use crate::Error;
 use crate::commands::live::options::{followed, followers};
 use crate::system::AnySystem;
 
-/// Of the option of that name.
+/// The help of the option `--nats`.
 const NATS: &str = "Follow a stream of NATS JetStream, such as nats://127.0.0.1:4222";
 
 /// Options that have nothing to do with whose estimator it is.
@@ -59,7 +59,8 @@ pub(super) struct Options {
     pub(super) json: bool,
 }
 
-/// Far less than the broker knows the ids of estimates: what was made since the last states is made again.
+/// The longest interval between two writes of the states, in seconds: far shorter than the broker remembers the ids of
+/// estimates, as those since the last states are produced again.
 const LONGEST_S: f64 = 60.0;
 
 fn interval(text: &str) -> Result<f64, String> {
@@ -68,15 +69,15 @@ fn interval(text: &str) -> Result<f64, String> {
 }
 
 impl Options {
-    /// Between two times that states are written.
+    /// The interval between two writes of the states.
     pub(super) fn every(&self) -> Duration {
         Duration::from_secs_f64(self.every)
     }
 
-    /// The transport that was chosen, and what to call it; it waits for nothing longer than told.
+    /// The selected transport and its name; its waits end at the given signal or time.
     ///
     /// # Errors
-    /// [`Error::Usage`] if it cannot be had.
+    /// [`Error::Usage`] if the transport is not available.
     pub(super) fn transport(
         &self,
         system: &str,
@@ -97,21 +98,21 @@ impl Options {
     }
 }
 
-/// What a program is called that is told no name: another for each subject, since two of one name would take the stream
-/// from each other. Letters that no name may have stand as their codes.
+/// The default name of a consumer: one per subject, as two consumers of one name would take the stream from each other.
+/// Characters that are not allowed in names are replaced by their codes.
 fn consumer(system: &str, subject: Option<&str>) -> String {
     let mut name = format!("kestirim-{system}");
     for byte in subject.map(|subject| format!("-{subject}")).unwrap_or_default().bytes() {
         match byte {
             b'-' | b'0'..=b'9' | b'A'..=b'Z' | b'a'..=b'z' => name.push(char::from(byte)),
-            // A String takes everything.
+            // Writing to a string does not fail.
             _ => name.write_fmt(format_args!("_{byte:02x}")).unwrap_or_default(),
         }
     }
     name
 }
 
-/// The command, with the options of each system.
+/// The command, with a subcommand and its options for each system.
 pub(in crate::commands) fn command() -> Command {
     let of = |system: &'static dyn AnySystem| {
         let command = Options::augment_args(Command::new(system.name())).about(system.title());

@@ -1,4 +1,4 @@
-//! What is said at the end.
+//! The report at the end of a run.
 
 use std::fmt;
 
@@ -9,22 +9,22 @@ use super::keyed::Fleet;
 use crate::numbers::TOLD;
 use crate::output;
 
-/// Devices that are named in a warning.
+/// The maximum number of devices named in a warning.
 const NAMED: usize = 5;
 
-/// What `host-sim fleet` prints at its end.
+/// The report that `host-sim fleet` prints at its end.
 #[derive(Debug, Serialize)]
 pub(super) struct Report {
     system: &'static str,
     source: String,
-    /// Devices that were heard, ever since the states were begun, as all that follows.
+    /// The number of devices heard. Like the counts below, it covers all runs since the states were begun.
     devices: usize,
     counts: Counts,
-    /// Messages that were not whole frames of devices.
+    /// Messages that were not complete frames of devices.
     unreadable: u64,
-    /// Bytes of a device on average.
+    /// The mean memory of a device in bytes.
     bytes_a_device: f64,
-    /// Messages that this program followed, and how long it took.
+    /// The number of messages that this run processed, and its duration in seconds.
     messages: u64,
     seconds: f64,
     warnings: Vec<String>,
@@ -51,7 +51,7 @@ impl Report {
         }
     }
 
-    /// What a user should know.
+    /// Warnings for the user.
     pub(super) fn warnings(&self) -> &[String] {
         &self.warnings
     }

@@ -1,11 +1,11 @@
-//! A log from which nothing comes: that is told, once.
+//! The warning, given once, that nothing arrives from a log.
 
 use std::time::{Duration, Instant};
 
-/// After so long it is told.
+/// The silence after which the warning is given.
 const QUIET: Duration = Duration::from_secs(10);
 
-/// Since when nothing came.
+/// A period without messages.
 #[derive(Debug)]
 pub(super) struct Silence {
     since: Instant,
@@ -13,12 +13,12 @@ pub(super) struct Silence {
 }
 
 impl Silence {
-    /// From now on.
+    /// Starts a period of silence.
     pub(super) fn begin(now: Instant) -> Self {
         Self { since: now, is_told: false }
     }
 
-    /// Nothing came, for that reason if there is one; what to tell of it, if it is time.
+    /// Notes that nothing has arrived, for the reason `why` if known, and returns the warning when it is due.
     pub(super) fn goes_on(&mut self, now: Instant, why: Option<&str>) -> Option<String> {
         if self.is_told || now.duration_since(self.since) < QUIET {
             return None;

@@ -1,4 +1,4 @@
-//! The states on the disk, whole or as they were before.
+//! Storage of the states on the disk, written atomically.
 
 use std::fs::{self, File, TryLockError};
 use std::io;
@@ -10,24 +10,24 @@ use super::keyed::{Fleet, Keyed};
 use super::transport::Log;
 use crate::{Error, output};
 
-/// The file's name.
+/// The name of the file.
 const NAME: &str = "fleet.states";
 /// The first bytes of the file.
 const MAGIC: &[u8] = b"kestirim fleet 2\n";
 const CHECKSUM: usize = size_of::<u32>();
 
-/// Whose states they are.
+/// The identity of the fleet that stored states belong to.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 struct Owner {
     system: String,
     settings: Vec<String>,
-    /// What an estimator begins with: where anchors are, and all that was set.
+    /// The snapshot of a fresh estimator, which covers anchor positions and all settings.
     fresh: Vec<u8>,
-    /// What they were read from.
+    /// The log that the states were computed from.
     log: Log,
 }
 
-/// A folder with the states of a fleet, for one program at a time.
+/// A folder with the states of a fleet, locked for one program at a time.
 #[derive(Debug)]
 pub(super) struct Store {
     path: PathBuf,
@@ -36,11 +36,11 @@ pub(super) struct Store {
 }
 
 impl Store {
-    /// Opens the folder, and loads the states that are there.
+    /// Opens the folder and loads the stored states.
     ///
     /// # Errors
-    /// If it cannot be had, another program has it, or what is in it are no states of this system with these settings
-    /// and from this log. In a log that was made anew they begin at its start.
+    /// If the folder is not available or in use by another program, or its contents are not states of this system with
+    /// these settings and from this log. For a log that was created anew the states begin at its start.
     pub(super) fn open(
         folder: &Path,
         system: &str,
@@ -69,10 +69,10 @@ impl Store {
         Ok(store)
     }
 
-    /// Writes all states. When it returns they are on the disk.
+    /// Writes all states and returns when they are on the disk.
     ///
     /// # Errors
-    /// [`Error::Write`]; then those before are.
+    /// [`Error::Write`]; the previous states are then kept.
     pub(super) fn write(&self, keyed: &Keyed) -> Result<(), Error> {
         let failed = |error: postcard::Error| {
             let source = io::Error::other(error.to_string());
@@ -124,7 +124,7 @@ impl Store {
     }
 }
 
-/// Removes what a program that was killed while it wrote has left.
+/// Removes drafts left behind by a program that was killed while writing.
 fn forget_drafts(folder: &Path) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();

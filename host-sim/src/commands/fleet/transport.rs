@@ -1,4 +1,4 @@
-//! What brings messages and takes estimates away.
+//! The interface that delivers messages and takes estimates away.
 
 use std::fmt::Debug;
 
@@ -6,66 +6,69 @@ use serde::{Deserialize, Serialize};
 
 use crate::Error;
 
-/// Which log it is: a position means nothing in another.
+/// The identity of a log: a position is meaningless in another one.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Log {
-    /// What messages come from: transport, stream and subject.
+    /// The origin of the messages: transport, stream and subject.
     pub(super) name: String,
-    /// When it was made, of a log that can be deleted and made anew under its name.
+    /// The creation time, for a log that can be deleted and created again under the same name.
     pub(super) created: Option<String>,
 }
 
-/// What came, with its place in the log from which it came.
+/// A message with its position in the log.
 #[derive(Debug, Clone)]
 pub(super) struct Delivery {
-    /// Grows from one to the next.
+    /// The position, which increases from message to message.
     pub(super) position: u64,
-    /// Whole frames.
+    /// The message: complete frames.
     pub(super) bytes: Vec<u8>,
 }
 
-/// What goes out.
+/// An estimate to be published.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Estimate {
     pub(super) device: u32,
-    /// Of no other estimate, and the same if it is made again: system, device, boot and number of the frame after which it was made.
+    /// A unique id that is the same if the estimate is produced again: system, device, boot and number of the frame
+    /// after which it was made.
     pub(super) id: String,
-    /// A frame of the same device and number.
+    /// The estimate as a frame with the same device and number.
     pub(super) frame: Vec<u8>,
 }
 
-/// A broker, or anything else with a log: messages have an order and a position, and come again if they are asked for.
+/// A broker, or any other transport with a log: messages have an order and a position, and are delivered again on
+/// request.
 ///
-/// Another broker is another implementation, and nothing else.
+/// Supporting another broker takes another implementation of this trait and nothing else.
 pub(super) trait Transport: Debug {
-    /// Which log positions belong to.
+    /// The log that positions refer to.
     fn log(&self) -> Log;
 
-    /// Begins, or begins anew, behind this position, and acknowledges all up to there; 0 is before the first message.
+    /// Starts, or starts again, after this position, and acknowledges everything up to it; 0 is before the first
+    /// message.
     ///
     /// # Errors
-    /// If there is nothing of the kind.
+    /// If there is no such log.
     fn resume(&mut self, position: u64) -> Result<(), Error>;
 
-    /// Waits a little for the next messages, in the order of their positions; none came, or nothing is connected just now, if
-    /// there are none.
+    /// Waits briefly for the next messages and returns them in the order of their positions. The result is empty if
+    /// none have arrived, or the connection is down.
     ///
     /// # Errors
-    /// What waiting does not mend.
+    /// An error from which waiting does not recover.
     fn receive(&mut self) -> Result<Vec<Delivery>, Error>;
 
-    /// Returns when all these are stored; one whose id is stored already is not stored again.
+    /// Stores the estimates and returns when all are stored; one whose id is already stored is not stored again.
     ///
     /// # Errors
-    /// What waiting does not mend.
+    /// An error from which waiting does not recover.
     fn publish(&mut self, estimates: &[Estimate]) -> Result<(), Error>;
 
-    /// Nothing up to here will be asked for again.
+    /// Declares that nothing up to this position will be requested again.
     ///
     /// # Errors
-    /// What waiting does not mend.
+    /// An error from which waiting does not recover.
     fn acknowledge(&mut self, position: u64) -> Result<(), Error>;
 
-    /// Messages that wait to be received, if that is known.
+    /// The number of messages waiting to be received, if known.
     fn lag(&self) -> Option<u64>;
 }

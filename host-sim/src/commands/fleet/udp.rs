@@ -1,4 +1,5 @@
-//! Datagrams: no log, so what comes while nobody listens is lost, and what is killed is not made again.
+//! Transport over datagrams without a log: messages sent while nothing listens are lost, and after a kill nothing is
+//! computed again.
 
 use std::net::{SocketAddr, UdpSocket};
 use std::time::Instant;
@@ -7,30 +8,30 @@ use super::transport::{Delivery, Estimate, Log, Transport};
 use crate::Error;
 use crate::commands::datagrams::{self, LONGEST, PATIENCE, is_silence};
 
-/// Messages that are followed together.
+/// The maximum number of messages processed together.
 const BATCH: usize = 2000;
 
 /// A port to which all devices send.
 #[derive(Debug)]
 pub(super) struct Udp {
     socket: UdpSocket,
-    /// Who is sent the estimates.
+    /// The address to which the estimates are sent.
     to: Option<SocketAddr>,
     position: u64,
     buffer: Vec<u8>,
 }
 
 impl Udp {
-    /// Listens to datagrams for this address.
+    /// Binds the port to this address.
     ///
     /// # Errors
-    /// [`Error::Usage`] if it cannot be had.
+    /// [`Error::Usage`] if the address is not available.
     pub(super) fn bind(address: &str, to: Option<SocketAddr>) -> Result<Self, Error> {
         let socket = datagrams::listen(address)?;
         Ok(Self { socket, to, position: 0, buffer: vec![0; LONGEST] })
     }
 
-    /// Where datagrams are to be sent.
+    /// The address to which datagrams are to be sent.
     pub(super) fn address(&self) -> Option<SocketAddr> {
         self.socket.local_addr().ok()
     }
@@ -65,7 +66,7 @@ impl Transport for Udp {
     fn publish(&mut self, estimates: &[Estimate]) -> Result<(), Error> {
         if let Some(to) = self.to {
             for estimate in estimates {
-                // Whoever is not there now gets none.
+                // A receiver that is not present at the moment misses the estimate.
                 let _ = self.socket.send_to(&estimate.frame, to);
             }
         }

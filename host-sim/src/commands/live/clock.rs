@@ -1,32 +1,32 @@
-//! Senders that are switched off and on again, and times that nobody can have meant.
+//! Detection of senders that are restarted, and of implausible times.
 
-/// Datagrams overtake each other by less than this, µs.
+/// The longest delay of a datagram that others have overtaken, in microseconds.
 const LATE_US: u64 = 1_000_000;
-/// Nobody is silent for longer and then goes on, µs: an hour.
+/// The longest plausible gap between two measurements, in microseconds: an hour.
 const AHEAD_US: u64 = 3_600_000_000;
-/// So many times in a row that are too late are another clock, …
+/// The number of consecutive times that are too late after which the sender's clock counts as restarted.
 const ANEW: u32 = 50;
-/// … and so many that are far ahead were meant.
+/// The number of consecutive times that are far ahead after which they are accepted.
 const MEANT: u32 = 5;
 
-/// Follows the clock of a sender.
+/// Tracks the clock of a sender.
 #[derive(Debug, Default)]
 pub(super) struct Clock {
     latest_us: Option<u64>,
-    /// How many in a row were too late, …
+    /// The number of consecutive times that were too late.
     late: u32,
-    /// … or far ahead.
+    /// The number of consecutive times that were far ahead.
     ahead: u32,
 }
 
-/// What is to be thought of a time.
+/// The verdict on a time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// It is the estimator's to judge.
+    /// The time is plausible and left to the estimator.
     Fits,
-    /// It is not to be believed.
+    /// The time is implausible.
     Odd,
-    /// The sender has begun anew.
+    /// The sender has restarted.
     Anew,
 }
 
@@ -73,7 +73,7 @@ mod tests {
                 assert_eq!(clock.judge(u64::MAX - step), Verdict::Odd);
                 assert_eq!(clock.judge(step), Verdict::Odd);
             }
-            // What was overtaken on the way is not wrong.
+            // A datagram that was overtaken in transit is not wrong.
             assert_eq!(clock.judge(time_us.saturating_sub(500_000)), Verdict::Fits);
         }
     }

@@ -1,4 +1,4 @@
-//! From bytes of telemetry to the estimators and the state.
+//! Decodes bytes of telemetry and passes the messages to the estimators and the state.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,10 +12,10 @@ use super::state::State;
 use crate::Error;
 use crate::system::{Answer, Plan};
 
-/// More devices are not followed: a sender may invent them.
+/// The maximum number of devices followed, as a sender may invent device numbers.
 const MOST: usize = 4096;
 
-/// Makes of bytes what there is to see.
+/// Turns received bytes into the state that is shown.
 #[derive(Debug)]
 pub(super) struct Decoder {
     hearing: Box<dyn Hearing>,
@@ -23,13 +23,14 @@ pub(super) struct Decoder {
 }
 
 impl Decoder {
-    /// With fresh estimators. After the `most` frames, or epochs, no more is wanted.
+    /// A decoder with fresh estimators, which stops after `most` frames or epochs.
     pub(super) fn new(
         following: &Following,
         state: Arc<Mutex<State>>,
         most: Option<u32>,
     ) -> Result<Self, Error> {
-        // What will not do is known before anything comes, and what the sender is to do is told.
+        // Building an estimator now reports unsuitable settings before anything arrives, and shows the instructions for
+        // the sender.
         let estimator = following.plan.as_deref().map(Plan::build).transpose()?;
         if let Some(estimator) = &estimator {
             let mut state = state.lock().unwrap_or_else(PoisonError::into_inner);
@@ -43,35 +44,35 @@ impl Decoder {
         Ok(Self { hearing, state })
     }
 
-    /// What there is to see.
+    /// The answer that the page shows.
     pub(super) fn answer(&self) -> Answer {
         self.state.lock().unwrap_or_else(PoisonError::into_inner).answer()
     }
 
-    /// Takes in what was read; whether more is wanted.
+    /// Processes received bytes; returns whether more are wanted.
     pub(super) fn take(&mut self, bytes: &[u8]) -> Result<bool, Error> {
         self.hearing.take(bytes)
     }
 
-    /// Nothing more will come.
+    /// Ends the stream.
     pub(super) fn finish(&mut self) -> Result<(), Error> {
         self.hearing.finish()
     }
 
-    /// Nothing comes for now.
+    /// Notes that nothing arrives at the moment.
     pub(super) fn pause(&mut self) -> Result<(), Error> {
         self.hearing.pause()
     }
 }
 
-/// Makes messages of bytes, and tells how many. Each device that says who it is has an estimator of its own, and so have
-/// together those that do not say it.
+/// Decodes messages and counts them. Each device that identifies itself has its own estimator; all anonymous senders
+/// share one.
 #[derive(Debug)]
 struct Telemetry {
     receiver: Receiver,
     devices: BTreeMap<Sender, Device>,
     plans: Plans,
-    /// Which is shown in detail; the first that is heard, if nobody says it.
+    /// The sender that is shown in detail; unless specified, the first that is heard.
     shown: Option<Sender>,
     state: Arc<Mutex<State>>,
     most: u32,
@@ -86,11 +87,11 @@ impl Hearing for Telemetry {
     }
 
     fn finish(&mut self) -> Result<(), Error> {
-        // A frame that only lacks its end is whole; any other piece of one is torn.
+        // A frame that only lacks its end is complete; any other fragment is torn.
         self.decode(&[0])?;
         self.each(Device::finish)?;
         let mut finished = Ok(());
-        // All of them, whatever is wrong with one.
+        // All devices are ended, even if one fails.
         for device in self.devices.values_mut() {
             finished = finished.and(device.end());
         }
@@ -127,7 +128,7 @@ impl Telemetry {
         self.devices.values_mut().try_for_each(|device| act(device, &mut state))
     }
 
-    /// Nobody who looks on waits for what takes long.
+    /// Performs the lengthy work while no viewer has to wait for it.
     fn settle(&mut self) {
         self.devices.values_mut().filter(|device| device.is_news).for_each(Device::settle);
     }
@@ -135,7 +136,7 @@ impl Telemetry {
     fn decode(&mut self, bytes: &[u8]) -> Result<bool, Error> {
         let shared = Arc::clone(&self.state);
         let mut state = shared.lock().unwrap_or_else(PoisonError::into_inner);
-        // Those beyond are not even asked for.
+        // Frames beyond the maximum are not even decoded.
         let wanted = self.most.saturating_sub(self.receiver.counts().received) as usize;
         for frame in self.receiver.frames(bytes).take(wanted) {
             let known = (&mut self.devices, &mut self.shown, &self.plans);
@@ -162,12 +163,12 @@ impl Telemetry {
     }
 }
 
-/// Who sends.
+/// The sender of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Sender {
-    /// Those that do not say who they are.
+    /// A sender that does not identify itself.
     Unnamed,
-    /// The device of this number.
+    /// The device with this number.
     Device(u32),
 }
 
@@ -184,7 +185,7 @@ impl Sender {
     }
 }
 
-/// What makes estimators: of the device that is shown, and of the others.
+/// The plans for the estimators of the device that is shown and of the others.
 #[derive(Debug)]
 struct Plans {
     shown: Option<Arc<dyn Plan>>,
@@ -194,7 +195,7 @@ struct Plans {
 /// The parts of a decoder that a frame changes.
 type Known<'a> = (&'a mut BTreeMap<Sender, Device>, &'a mut Option<Sender>, &'a Plans);
 
-/// Takes a frame to its device.
+/// Passes a frame to its device.
 fn hear((devices, shown, plans): Known<'_>, frame: Frame, state: &mut State) -> Result<(), Error> {
     let sender = Sender::of(&frame);
     let is_shown = *shown.get_or_insert(sender) == sender;

@@ -1,4 +1,4 @@
-//! One sender of a line: its frames in their order, its estimator, and what became of it.
+//! One sender of a line: the order of its frames, its estimator, and its counters.
 
 use std::sync::Arc;
 
@@ -12,30 +12,30 @@ use crate::Error;
 use crate::numbers::{Numbers, Place};
 use crate::system::Plan;
 
-/// What became of a device's frames, and where it is.
+/// The counters of a device's frames, and its position.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Row {
-    /// Its boot number.
+    /// The boot number of the device.
     pub boot: u32,
-    /// Good frames.
+    /// The number of good frames.
     pub received: u32,
-    /// Numbers that did not come.
+    /// Missing sequence numbers.
     pub lost: u32,
-    /// Frames that came twice, too late, or of another sender.
+    /// Frames that were duplicates, too late, or from another sender.
     pub left_out: u64,
-    /// Those of them that are of another sender with this number, or of one that does not count its boots.
+    /// Left-out frames from another sender with this number, or from one that does not count its boots.
     pub another: u32,
-    /// Measurements that the estimator took in.
+    /// Measurements that the estimator used.
     pub taken: u64,
-    /// What cannot be true, or is older than what came before.
+    /// Measurements that are implausible or older than earlier ones.
     pub refused: u64,
-    /// How often it was switched on again.
+    /// The number of times that the device was switched on again.
     pub restarts: u32,
-    /// The last time of its clock, µs.
+    /// The latest time of the device's clock, in microseconds.
     pub time_us: Option<u64>,
-    /// Where the estimator is, m.
+    /// The position estimate (m).
     pub position: Option<[f64; 3]>,
-    /// Of a walk: its horizontal length from stance to stance, m.
+    /// For a walk, its horizontal length from stance to stance (m).
     pub path_length_m: Option<f64>,
 }
 
@@ -44,18 +44,18 @@ pub struct Row {
 pub(super) struct Device {
     sorter: Sorter,
     feed: Feed,
-    /// None of a sender that does not say who it is.
+    /// The tracker of sequence numbers; `None` for a sender that does not identify itself.
     numbers: Option<Numbers>,
     row: Row,
     twice: u64,
-    /// Without figures, of one that is not shown in detail.
+    /// A state without figures, for a device that is not shown in detail.
     brief: Option<Box<State>>,
-    /// Whether anything came since it was shown.
+    /// Whether anything has arrived since the device was last shown.
     pub(super) is_news: bool,
 }
 
 impl Device {
-    /// With a fresh estimator.
+    /// A device with a fresh estimator.
     pub(super) fn new(plan: Option<Arc<dyn Plan>>, is_shown: bool) -> Result<Self, Error> {
         Ok(Self {
             sorter: Sorter::default(),
@@ -68,7 +68,7 @@ impl Device {
         })
     }
 
-    /// Takes a frame in; `shown` is what is shown in detail.
+    /// Processes a frame; `shown` is the state that is shown in detail.
     pub(super) fn take(&mut self, frame: Frame, shown: &mut State) -> Result<(), Error> {
         self.is_news = true;
         self.row.received = self.row.received.saturating_add(1);
@@ -85,7 +85,7 @@ impl Device {
                         self.row.lost = self.row.lost.saturating_add(missing);
                         self.sorter.release_all(|message| self.feed.take(message, state))?;
                         self.feed.begin_anew(state)?;
-                        // Its first frames may have been overtaken, too.
+                        // Frames right after the restart may have been overtaken, too.
                         Order::Newest { missing: u16::try_from(missing).unwrap_or(u16::MAX) }
                     }
                     Place::Late { behind } => {
@@ -107,35 +107,35 @@ impl Device {
         self.sorter.take(frame, order, |message| self.feed.take(message, state))
     }
 
-    /// Nothing comes for now.
+    /// Notes that nothing arrives at the moment.
     pub(super) fn pause(&mut self, shown: &mut State) -> Result<(), Error> {
-        // What waited may go on now, and what takes long has time.
+        // Waiting frames may now be released, and there is time for lengthy work.
         self.is_news = true;
         let state = self.brief.as_deref_mut().unwrap_or(shown);
         self.sorter.release_all(|message| self.feed.take(message, state))
     }
 
-    /// Nothing more will come.
+    /// Releases the remaining frames at the end of the stream.
     pub(super) fn finish(&mut self, shown: &mut State) -> Result<(), Error> {
         self.is_news = true;
         let state = self.brief.as_deref_mut().unwrap_or(shown);
         self.sorter.finish(|message| self.feed.take(message, state))
     }
 
-    /// The estimator ends.
+    /// Ends the estimator.
     ///
     /// # Errors
-    /// As [`Feed::finish`].
+    /// Those of [`Feed::finish`].
     pub(super) fn end(&mut self) -> Result<(), Error> {
         self.feed.finish()
     }
 
-    /// Time for what takes long.
+    /// Performs lengthy work.
     pub(super) fn settle(&mut self) {
         self.feed.settle();
     }
 
-    /// How it is doing.
+    /// Updates the state that is shown, and returns the device's row.
     pub(super) fn show(&mut self, shown: &mut State) -> Row {
         self.is_news = false;
         let left_out = self.left_out();
@@ -153,18 +153,18 @@ impl Device {
         }
     }
 
-    /// Frames that were left out.
+    /// The number of frames that were left out.
     pub(super) fn left_out(&self) -> u64 {
         self.sorter.left_out() + self.twice + u64::from(self.row.another)
     }
 
-    /// Numbers that are missing, of a sender that says who it is.
+    /// The number of missing frames of a sender that identifies itself.
     pub(super) const fn lost(&self) -> u32 {
         self.row.lost
     }
 }
 
-/// Where a frame stands; the first begins.
+/// The place of a frame in the sequence; the first frame starts it.
 fn place(numbers: &mut Option<Numbers>, origin: Origin, frame: &Frame) -> Place {
     if let Some(numbers) = numbers {
         return numbers.take(origin, frame);

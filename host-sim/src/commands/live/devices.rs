@@ -6,11 +6,11 @@ use super::state::State;
 use crate::numbers::TOLD;
 use crate::system::Sheet;
 
-/// Devices that are named in warnings.
+/// The maximum number of devices named in warnings.
 const TOLD_DEVICES: usize = 5;
 
 impl State {
-    /// Which devices are two, as far as their numbers tell.
+    /// Warnings about device numbers that two senders appear to share.
     pub(super) fn shared_numbers(&self) -> impl Iterator<Item = String> {
         let is_shared = |row: &Row| row.another >= TOLD;
         let shared = self.devices.iter().filter(move |(_, row)| is_shared(row));
@@ -23,7 +23,7 @@ impl State {
         told.chain((self.beyond > 0).then_some(beyond))
     }
 
-    /// What became of all devices' frames together.
+    /// The sum of all devices' counters.
     pub(super) fn totals(&self) -> Counts {
         let mut totals = self.counts;
         let others = self.devices.iter().filter(|(number, _)| Some(**number) != self.shown);
@@ -35,7 +35,7 @@ impl State {
         totals
     }
 
-    /// All devices, if there are any that say who they are.
+    /// The table of all devices that identify themselves, if there are any.
     pub(super) fn fleet(&self) -> Option<Sheet> {
         let number =
             |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |it| format!("{it:.2}"));

@@ -1,4 +1,4 @@
-//! From messages to the estimator, and what came of it to whoever looks on.
+//! Passes messages to the estimator, and its results to the state.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use super::state::State;
 use crate::Error;
 use crate::system::{Online, Outcome, Plan};
 
-/// Feeds an estimator.
+/// Feeds an estimator with messages.
 #[derive(Debug)]
 pub(super) struct Feed {
     plan: Option<Arc<dyn Plan>>,
@@ -18,13 +18,13 @@ pub(super) struct Feed {
 }
 
 impl Feed {
-    /// With a fresh estimator.
+    /// A feed with a fresh estimator.
     pub(super) fn new(plan: Option<Arc<dyn Plan>>) -> Result<Self, Error> {
         let estimator = plan.as_deref().map(Plan::build).transpose()?;
         Ok(Self { plan, estimator, clock: Clock::default() })
     }
 
-    /// Takes in a message. What cannot be true is counted and no more.
+    /// Processes a message. An implausible one is only counted.
     pub(super) fn take(&mut self, message: &Message, state: &mut State) -> Result<(), Error> {
         let Some(time_us) = message.measured_us() else {
             state.tell(message);
@@ -42,7 +42,7 @@ impl Feed {
         Ok(())
     }
 
-    /// The sender says that it was switched on again.
+    /// Restarts after the sender reports that it was switched on again.
     pub(super) fn begin_anew(&mut self, state: &mut State) -> Result<(), Error> {
         self.clock = Clock::default();
         self.rebuild(state)
@@ -58,22 +58,22 @@ impl Feed {
         self.estimator.as_mut().map_or(Outcome::NotMine, |estimator| estimator.take(message))
     }
 
-    /// Nothing more is there for now.
+    /// Performs lengthy work while no more input is waiting.
     pub(super) fn settle(&mut self) {
         if let Some(estimator) = &mut self.estimator {
             estimator.settle();
         }
     }
 
-    /// Nothing more will come.
+    /// Ends the stream.
     ///
     /// # Errors
-    /// As [`Online::finish`].
+    /// Those of [`Online::finish`].
     pub(super) fn finish(&mut self) -> Result<(), Error> {
         self.estimator.as_mut().map_or(Ok(()), |estimator| estimator.finish())
     }
 
-    /// Shows how the estimator is doing.
+    /// Updates the shown state from the estimator.
     pub(super) fn show(&self, state: &mut State) {
         if let Some(estimator) = &self.estimator {
             state.show(estimator.as_ref());
@@ -89,7 +89,7 @@ mod tests {
     use crate::systems::ALL;
     use kestirim_telemetry::{Footprint, GlobalPosition, Imu, PathLoss, Position, Range};
 
-    /// Whose estimators are built without files, and take messages.
+    /// The systems whose estimators are built without files and use messages.
     fn systems() -> impl Iterator<Item = Following> {
         let of_telemetry = ALL.iter().filter(|system| !system.hears_bytes());
         of_telemetry.filter_map(|system| following(*system))
@@ -99,7 +99,7 @@ mod tests {
         Following::of(system, &Settings::new(system.settings()), &Files::default()).ok()
     }
 
-    /// One that takes messages like this.
+    /// A system whose estimator uses messages like this.
     fn taking(message: &Message) -> Following {
         let takes = |following: &Following| {
             let online = following.plan.as_deref().map(|plan| plan.build().unwrap());
@@ -175,7 +175,7 @@ mod tests {
     fn places_on_earth_are_drawn_east_and_north_of_the_first() -> Result<(), Error> {
         let (mut feed, mut state) = feed(&Following::NONE);
         let radius = 6_378_137.0;
-        // On the equator at longitude 0 east is y, and north is z.
+        // On the equator at longitude 0, east is y and north is z.
         for position in [[radius, 0.0, 0.0], [radius, 3.0, 4.0], [f64::NAN; 3]] {
             let message = GlobalPosition { time_us: 0, position, sigma: None };
             feed.take(&message.into(), &mut state)?;

@@ -1,4 +1,4 @@
-//! The thread that has what was recorded decoded.
+//! The thread that decodes the recording.
 
 use std::fs::File;
 use std::io;
@@ -13,23 +13,23 @@ use super::state::State;
 use super::tape::{Piece, Reel};
 use crate::Error;
 
-/// Bytes that are read at once: about a millisecond's work.
+/// The number of bytes read at once: about a millisecond's work.
 pub(super) const BATCH: usize = 1 << 14;
-/// What has arrived is on the disk itself after about this time at most.
+/// The approximate limit on the time until received bytes are on the disk itself.
 const ON_DISK_WITHIN: Duration = Duration::from_secs(1);
 
-/// Who follows.
+/// The follower of a recording.
 #[derive(Debug)]
 pub(super) struct Follower {
     pub(super) reel: Reel,
-    /// The file that is being recorded.
+    /// The file that is being recorded, to be synced to the disk.
     pub(super) disk: Option<File>,
     pub(super) following: Following,
     pub(super) state: Arc<Mutex<State>>,
-    /// Frames that are enough.
+    /// The number of frames after which to stop.
     pub(super) most: Option<u32>,
     pub(super) stop: Stopper,
-    /// Which recording it is.
+    /// The path of the recording.
     pub(super) path: PathBuf,
 }
 
@@ -37,13 +37,13 @@ impl Follower {
     /// Follows the recording to its end.
     pub(super) fn run(mut self) -> Result<(), Error> {
         let followed = self.follow();
-        // Nobody hears what goes on: whoever listens can stop.
+        // Nothing more is processed: the listener can stop.
         self.stop.stop();
         followed
     }
 
     fn follow(&mut self) -> Result<(), Error> {
-        // An estimator stays with its thread.
+        // The estimator is created in the thread that uses it.
         let mut decoder = Decoder::new(&self.following, Arc::clone(&self.state), self.most)?;
         let mut buffer = vec![0; BATCH];
         let mut synced = Instant::now();

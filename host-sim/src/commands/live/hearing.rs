@@ -1,4 +1,4 @@
-//! What makes something of bytes that come: telemetry, or a stream that an estimator reads itself.
+//! Consumers of received bytes: telemetry, or a stream that an estimator decodes itself.
 
 use std::fmt::Debug;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -9,33 +9,33 @@ use super::state::State;
 use crate::Error;
 use crate::system::Online;
 
-/// Makes something of bytes that come, and shows it.
+/// A consumer of received bytes that updates the shown state.
 pub(super) trait Hearing: Debug {
-    /// Takes in what was read; whether more is wanted.
+    /// Processes received bytes; returns whether more are wanted.
     ///
     /// # Errors
-    /// What an estimator cannot go on with.
+    /// An error after which the estimator cannot continue.
     fn take(&mut self, bytes: &[u8]) -> Result<bool, Error>;
 
-    /// Nothing comes for now.
+    /// Notes that nothing arrives at the moment.
     ///
     /// # Errors
-    /// As [`Self::take`].
+    /// Those of [`Self::take`].
     fn pause(&mut self) -> Result<(), Error>;
 
-    /// Nothing more will come.
+    /// Ends the stream.
     ///
     /// # Errors
-    /// As [`Self::take`].
+    /// Those of [`Self::take`].
     fn finish(&mut self) -> Result<(), Error>;
 }
 
-/// A stream that is no telemetry: an estimator reads the bytes themselves.
+/// A stream other than telemetry, whose bytes the estimator decodes itself.
 #[derive(Debug)]
 pub(super) struct Stream {
     estimator: Box<dyn Online>,
     state: Arc<Mutex<State>>,
-    /// After so many epochs no more is wanted.
+    /// The number of epochs after which no more bytes are wanted.
     most: u32,
 }
 
@@ -44,7 +44,7 @@ impl Stream {
         Self { estimator, state, most }
     }
 
-    /// Shows what so many bytes came to; whether more is wanted.
+    /// Updates the shown state after a number of bytes; returns whether more are wanted.
     fn show(&self, bytes: usize) -> bool {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         let [received, taken] = self.estimator.heard();

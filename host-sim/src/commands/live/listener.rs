@@ -1,4 +1,4 @@
-//! The thread that receives: it writes down what comes, and does nothing else.
+//! The receiving thread, which only records what arrives.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -10,7 +10,7 @@ use super::tape::Tape;
 use crate::Error;
 use crate::commands::datagrams::LONGEST;
 
-/// Who listens.
+/// The listener on a line.
 #[derive(Debug)]
 pub(super) struct Listener {
     pub(super) source: Source,
@@ -21,10 +21,10 @@ pub(super) struct Listener {
 }
 
 impl Listener {
-    /// Listens until the line ends or nobody wants to hear more.
+    /// Listens until the line ends or the stream is stopped.
     pub(super) fn run(mut self) -> Result<(), Error> {
         let ended = self.listen();
-        // Whatever happened: nothing more will come.
+        // Whether or not an error occurred, nothing more will arrive.
         self.tape.complete();
         ended
     }

@@ -1,12 +1,12 @@
-//! `host-sim live`: telemetry of a sender that is switched on, followed while it comes.
+//! `host-sim live`: receives telemetry from a running sender and follows it.
 //!
 //! `source` → `recorder` → file → `tape` → `follower` → `decoder` → `device` (`order` → `feed`) → [`Online`](crate::system::Online) → `state` →
 //! `picture`.
 //!
-//! One thread waits for bytes and does nothing but write them to the recording; the other reads them there,
-//! decodes them and feeds the estimator. So whatever is counted as received is in the file, whoever receives waits
-//! for nobody, and an estimator that is slower than the stream falls behind without losing anything. Whoever asks
-//! for an [answer](Live::answer) holds up the second thread at most.
+//! One thread waits for bytes and does nothing but write them to the recording; the other reads them from there,
+//! decodes them and feeds the estimator. So whatever counts as received is in the file, the receiver never waits, and
+//! an estimator that is slower than the stream falls behind without losing anything. A request for an
+//! [answer](Live::answer) delays the second thread at most.
 
 mod clock;
 mod decoder;
@@ -56,10 +56,10 @@ use crate::system::{Answer, Plan};
 use crate::text::printable_path;
 use crate::{Error, output};
 
-/// Between two looks whether the stream has ended.
+/// The interval at which the end of the stream is polled.
 const PATIENCE: Duration = Duration::from_millis(20);
 
-/// Listens until the stream ends or somebody presses Ctrl-C, and prints what came.
+/// Listens until the stream ends or Ctrl-C is pressed, and prints a report.
 pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     let (stream, following) = options::read(matches)?;
     let mut page = (!stream.headless).then(|| Page::bind(stream.port)).transpose()?;
@@ -71,7 +71,7 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     }
     let (stop, ended) = (live.stopper(), Stopper::default());
     let end = ended.clone();
-    // Without it Ctrl-C ends the program at once: the recording is complete even so.
+    // Without a handler Ctrl-C ends the program at once: even so the recording is complete.
     let _ = ctrlc::set_handler(move || {
         stop.stop();
         end.stop();
@@ -84,7 +84,7 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
         output::warn(&format!("warning: {warning}"));
     }
     output::show(&report, stream.json)?;
-    // Played back, it is over before anybody has looked.
+    // A recording that is played back ends before anyone can look at the page.
     while page.is_some() && stream.file.is_some() && !ended.is_stopped() {
         thread::sleep(PATIENCE);
     }
@@ -96,7 +96,7 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
 pub struct Live {
     state: Arc<Mutex<State>>,
     following: Following,
-    /// Frames that are enough.
+    /// The number of frames after which to stop.
     most: Option<u32>,
     stop: Stopper,
     listener: Option<JoinHandle<Result<(), Error>>>,
@@ -106,12 +106,12 @@ pub struct Live {
     recording: PathBuf,
 }
 
-/// Ends a stream, from any thread.
+/// A handle that ends a stream from any thread.
 #[derive(Debug, Clone, Default)]
 pub struct Stopper(Arc<AtomicBool>);
 
 impl Stopper {
-    /// Nothing more is received; what has arrived is still followed.
+    /// Stops receiving; what has arrived is still processed.
     pub fn stop(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
@@ -122,19 +122,19 @@ impl Stopper {
 }
 
 impl Live {
-    /// What a command line of `live` asks for.
+    /// Starts the stream that a command line of `live` asks for.
     ///
     /// # Errors
-    /// As [`Live::start`], and whatever is wrong with options and files.
+    /// Those of [`Live::start`], and errors in options and files.
     pub fn of(matches: &ArgMatches) -> Result<Self, Error> {
         let (stream, following) = options::read(matches)?;
         Self::start(&stream, &following)
     }
 
-    /// Begins to listen, to record and to follow; or plays a recording back.
+    /// Starts listening, recording and following; or plays a recording back.
     ///
     /// # Errors
-    /// Whatever is wrong with options, files, address and device; then no recording has been begun.
+    /// Errors in options, files, address and device; no recording has then been begun.
     pub fn start(options: &Stream, following: &Following) -> Result<Self, Error> {
         let stop = Stopper::default();
         let state = State::new(following);
@@ -150,7 +150,7 @@ impl Live {
             source: String::new(),
             recording: PathBuf::new(),
         };
-        // What will not do is known before anything is recorded.
+        // Building an estimator now reports unsuitable settings before anything is recorded.
         following.plan.as_deref().map(Plan::build).transpose()?;
         let (reel, disk) = match &options.file {
             Some(path) => {
@@ -168,7 +168,7 @@ impl Live {
         Ok(live)
     }
 
-    /// Begins to listen and to record; where to read the recording, and what to have written to the disk.
+    /// Starts listening and recording; returns the reader of the recording, and the file to sync to the disk.
     fn listen(
         &mut self,
         options: &Stream,
@@ -193,17 +193,17 @@ impl Live {
         Ok((reel, Some(disk)))
     }
 
-    /// At which address it listens to datagrams, if it does.
+    /// The address on which datagrams are received, if any.
     pub fn address(&self) -> Option<SocketAddr> {
         self.address
     }
 
-    /// Where everything is written down.
+    /// The path of the recording.
     pub fn recording(&self) -> &Path {
         &self.recording
     }
 
-    /// One line that says what is listened to and where it is written.
+    /// One line that names the source and the recording.
     pub fn announcement(&self) -> String {
         if self.listener.is_none() {
             return format!("playing {} back", self.source);
@@ -214,17 +214,17 @@ impl Live {
         format!("listening on {source}, recording to {recording}{warning}")
     }
 
-    /// What can end it, from any thread.
+    /// A handle that ends the stream from any thread.
     pub fn stopper(&self) -> Stopper {
         self.stop.clone()
     }
 
-    /// What there is to see now.
+    /// The present answer for the page.
     pub fn answer(&self) -> Answer {
         self.viewed().now()
     }
 
-    /// What a page shows, from any thread and even when this is finished.
+    /// The view that a page shows, usable from any thread and even after the stream is finished.
     pub fn view(&self) -> Arc<dyn Show> {
         Arc::new(self.viewed())
     }
@@ -241,7 +241,7 @@ impl Live {
         }
     }
 
-    /// What became of everything so far.
+    /// The counters so far.
     pub fn counts(&self) -> Counts {
         self.state().counts
     }
@@ -251,13 +251,13 @@ impl Live {
         self.follower.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
-    /// Stops listening and says what came of it.
+    /// Stops listening and returns the report.
     ///
     /// # Errors
-    /// If the line broke or the recording could not be written any further.
+    /// If the line failed or the recording could not be continued.
     pub fn finish(mut self) -> Result<Report, Error> {
         self.stop.stop();
-        // The listener's complaint comes first: without it there is nothing to follow.
+        // The listener's error comes first: without the listener there is nothing to follow.
         for thread in [self.listener.take(), self.follower.take()].into_iter().flatten() {
             thread.join().unwrap_or_else(|panic| resume_unwind(panic))?;
         }

@@ -1,4 +1,4 @@
-//! What the command line of `host-sim live` can choose.
+//! The options of `host-sim live`.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -14,16 +14,16 @@ use crate::system::{AnySystem, Files, Panel, Plan, Setting, SettingValue, Settin
 use crate::systems::ALL;
 use crate::{Error, output};
 
-/// Nobody's estimator: what the sender itself estimates is shown.
+/// The name for no system: only the sender's own estimates are shown.
 const NONE: &str = "none";
 
-/// The option that looks at a calibration while it is made.
+/// The option that follows a calibration while it is recorded.
 const CALIBRATE: &str = "calibrate";
 
-/// Where senders find this program if nobody says otherwise: on the same machine.
+/// The default address on which senders reach this program: on the same machine.
 const DEFAULT_ADDRESS: &str = "127.0.0.1:5775";
 
-/// The option, and the page's control, that chooses a device.
+/// The option, and the page's control, that selects a device.
 const DEVICE: &str = "device";
 const DEVICE_HELP: &str = "number of the device that is shown in detail";
 
@@ -71,24 +71,24 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// Where datagrams are to be sent.
+    /// The address to which datagrams are to be sent.
     pub(super) fn address(&self) -> &str {
         self.udp.as_deref().unwrap_or(DEFAULT_ADDRESS)
     }
 }
 
-/// Whose estimator follows a stream, with its settings.
+/// The system whose estimator follows a stream, with its settings.
 #[derive(Debug, Clone)]
 pub struct Following {
-    /// The system's name, or `none`.
+    /// The name of the system, or `none`.
     pub name: &'static str,
-    /// Its figures.
+    /// The figures of the system.
     pub panels: &'static [Panel],
-    /// What makes its estimator.
+    /// The plan of the estimator, if there is one.
     pub plan: Option<Arc<dyn Plan>>,
-    /// Which device is shown in detail; none if that is the first one.
+    /// The device that is shown in detail; `None` selects the first one.
     pub device: Option<u32>,
-    /// Of what it is made.
+    /// The system, settings and files that the plan was made from.
     origin: Option<Origin>,
 }
 
@@ -101,14 +101,14 @@ struct Origin {
 }
 
 impl Following {
-    /// Nobody's estimator.
+    /// Follows without an estimator.
     pub const NONE: Self =
         Self { name: NONE, panels: &Panel::ALL, plan: None, device: None, origin: None };
 
-    /// A system's.
+    /// Follows with the estimator of a system.
     ///
     /// # Errors
-    /// Whatever is wrong with files and settings; [`Error::Usage`] for a system that follows no stream.
+    /// Errors in files and settings; [`Error::Usage`] for a system that cannot follow a stream.
     pub fn of(
         system: &'static dyn AnySystem,
         settings: &Settings,
@@ -128,12 +128,12 @@ impl Following {
         })
     }
 
-    /// Whether the estimator hears the bytes of the stream, which is no telemetry then.
+    /// Whether the estimator decodes the bytes of the stream itself, which is then not telemetry.
     pub(super) fn hears_bytes(&self) -> bool {
         self.origin.as_ref().is_some_and(|origin| origin.system.hears_bytes())
     }
 
-    /// What can be set, and what is; with several devices which one is shown, too.
+    /// The settings with their values; if there are several devices, also the one that selects the device shown.
     pub(super) fn settings(&self, has_devices: bool) -> Settings {
         let settings = self.origin.as_ref().map(|origin| origin.settings.clone());
         let mut settings = settings.unwrap_or_else(|| Settings::new([]));
@@ -146,16 +146,16 @@ impl Following {
         settings
     }
 
-    /// What makes the estimators of devices that are not shown; none while a calibration is made: it writes one file,
-    /// which is that of the device that is shown.
+    /// The plan for the estimators of devices that are not shown; `None` while a calibration is recorded, as its single
+    /// file belongs to the device that is shown.
     pub(super) fn plan_of_others(&self) -> Option<&Arc<dyn Plan>> {
         self.plan.as_ref().filter(|_| self.origin.is_some())
     }
 
-    /// The same with other settings.
+    /// The same system and files with other settings.
     ///
     /// # Errors
-    /// As [`Self::of`]; [`Error::Usage`] for settings that would change nothing.
+    /// Those of [`Self::of`]; [`Error::Usage`] for settings that would have no effect.
     pub(super) fn with(&self, settings: &Settings) -> Result<Self, Error> {
         let device = settings.text(DEVICE).and_then(|number| number.parse().ok()).or(self.device);
         let settings = settings.without(|name| name == DEVICE);
@@ -192,7 +192,7 @@ pub(in crate::commands) fn command(arguments: &[OsString]) -> Command {
         .args(watches(system).then(calibrate))
 }
 
-/// Files and settings of a system, as far as they act on a stream.
+/// The arguments of a system's files and settings that apply to a live stream.
 pub(in crate::commands) fn followed(system: &dyn AnySystem) -> Vec<Arg> {
     let settings = live_settings(system);
     let files = system.files().iter().filter(|field| field.in_live);
@@ -201,10 +201,10 @@ pub(in crate::commands) fn followed(system: &dyn AnySystem) -> Vec<Arg> {
     files.map(|field| field.argument(&settings)).chain(others).collect()
 }
 
-/// What a command line gives of them.
+/// The settings and files that a command line gives.
 ///
 /// # Errors
-/// Whatever is wrong with it.
+/// Errors in the command line.
 pub(in crate::commands) fn given(
     system: &dyn AnySystem,
     matches: &ArgMatches,
@@ -215,7 +215,7 @@ pub(in crate::commands) fn given(
     Ok((settings, files))
 }
 
-/// Whether a calibration of the system can be looked at while it is made.
+/// Whether the system can follow a calibration while it is recorded.
 fn watches(system: &dyn AnySystem) -> bool {
     system.calibration().is_some_and(|it| it.watch(Path::new("")).is_some())
 }
@@ -227,7 +227,7 @@ fn calibrate() -> Arg {
     argument.value_parser(clap::value_parser!(PathBuf))
 }
 
-/// Which options each system has beside those that all have.
+/// A list of the options that each system has beside the common ones.
 fn options_of_systems() -> String {
     let lines = followers().map(|system| {
         let files =
@@ -245,7 +245,7 @@ fn options_of_systems() -> String {
     format!("Options of a system (--system NAME --help tells what they do):\n{}", lines.join("\n"))
 }
 
-/// What the arguments ask for.
+/// The stream and the system that the arguments ask for.
 pub(super) fn read(matches: &ArgMatches) -> Result<(Stream, Following), Error> {
     let stream = arguments::read::<Stream>(matches)?;
     let system = matches.get_one::<String>("system").and_then(|name| find(name));
@@ -266,7 +266,7 @@ pub(super) fn read(matches: &ArgMatches) -> Result<(Stream, Following), Error> {
     Ok((stream, Following { device, ..Following::of(system, &settings, &files)? }))
 }
 
-/// A complaint about an option that another system has says so.
+/// The error message for an option that belongs to another system, which it names.
 pub(in crate::commands) fn complaint(error: &clap::Error) -> Option<String> {
     let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg) else {
         return None;
@@ -283,7 +283,7 @@ pub(in crate::commands) fn complaint(error: &clap::Error) -> Option<String> {
     (!systems.is_empty()).then(|| format!("--{name} is for --system {}", systems.join(" or ")))
 }
 
-/// Systems that follow a stream.
+/// The systems that can follow a stream.
 pub(in crate::commands) fn followers() -> impl Iterator<Item = &'static dyn AnySystem> {
     ALL.iter().copied().filter(|system| !system.panels().is_empty())
 }

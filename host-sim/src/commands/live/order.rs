@@ -1,32 +1,32 @@
-//! Frames in the order in which they were sent.
+//! Restoring the order in which frames were sent.
 //!
-//! Datagrams overtake each other on their way. What comes in order goes on at once; behind a gap frames wait for what
-//! is missing, as long as the sender itself takes for [`WINDOW_US`].
+//! Datagrams overtake each other in transit. Frames in order are passed on at once; frames behind a gap wait for the
+//! missing ones, for up to [`WINDOW_US`] of the sender's clock.
 
 use std::collections::BTreeMap;
 
 use kestirim_telemetry::{Frame, Message, Order, RESUMED_AFTER};
 
-/// So long, by the sender's clock, a gap is kept open.
+/// How long a gap is kept open, in microseconds of the sender's clock.
 const WINDOW_US: u64 = 50_000;
-/// Frames that wait at most: those of senders without a clock.
+/// The maximum number of waiting frames, which limits senders without a clock.
 const MOST: usize = 256;
 
-/// Where frames wait for those before.
+/// A buffer in which frames wait for earlier ones.
 #[derive(Debug)]
 pub(super) struct Sorter {
     waiting: BTreeMap<u64, Message>,
-    /// Number of the newest frame and of the one that is due, counted on beyond 65535.
+    /// The number of the newest frame and of the one that is due, extended beyond 65535.
     newest: u64,
     due: u64,
-    /// The last foreign frames, until it is known whose they are.
+    /// The last foreign frames, which do not continue the sequence, until it is known whose they are.
     foreign: Vec<Frame>,
     left_out: u64,
 }
 
 impl Default for Sorter {
     fn default() -> Self {
-        // Room for those that are late at the very beginning.
+        // Leaves room for late frames at the very beginning.
         let first = u64::from(u16::MAX);
         Self {
             waiting: BTreeMap::new(),
@@ -39,7 +39,7 @@ impl Default for Sorter {
 }
 
 impl Sorter {
-    /// Takes a frame in that stands there among those before; what is due thereby goes to `sink`.
+    /// Accepts a frame with its place in the sequence and passes all frames that become due to `sink`.
     pub(super) fn take<E>(
         &mut self,
         frame: Frame,
@@ -69,7 +69,7 @@ impl Sorter {
         self.release(&mut sink)
     }
 
-    /// Nothing comes for now: what waits is waited for no longer.
+    /// Releases all waiting frames while nothing more arrives.
     pub(super) fn release_all<E>(
         &mut self,
         mut sink: impl FnMut(&Message) -> Result<(), E>,
@@ -81,7 +81,7 @@ impl Sorter {
         Ok(())
     }
 
-    /// Nothing more will come: the last few frames of a sender that began anew are its own.
+    /// Releases all frames at the end of the stream: the last few of a sender that restarted count as its own.
     pub(super) fn finish<E>(
         &mut self,
         mut sink: impl FnMut(&Message) -> Result<(), E>,
@@ -93,7 +93,7 @@ impl Sorter {
         self.release_all(&mut sink)
     }
 
-    /// Frames that were left out: they came twice, too late, or from another sender.
+    /// The number of frames that were left out: duplicates, late ones, or those of another sender.
     pub(super) const fn left_out(&self) -> u64 {
         self.left_out
     }
@@ -106,12 +106,12 @@ impl Sorter {
         }
     }
 
-    /// The sender that is followed still sends: what does not follow is not its.
+    /// Drops the foreign frames: the sender that is followed still sends, so they are not its own.
     fn leave_out(&mut self) {
         self.left_out += self.foreign.drain(..).count() as u64;
     }
 
-    /// The foreign frames and this one are followed from here on.
+    /// Continues with the foreign frames and this one as the new sequence.
     fn resume(&mut self, last: Frame) {
         self.newest = self.due + u64::from(u16::MAX);
         let first = self.newest;
@@ -135,7 +135,7 @@ impl Sorter {
         Ok(())
     }
 
-    /// Whether what is missing is waited for no longer.
+    /// Whether the wait for missing frames is given up.
     fn is_given_up(&self) -> bool {
         let mut times = self.waiting.values().filter_map(Message::measured_us);
         let first = times.next();
@@ -151,7 +151,8 @@ mod tests {
     use super::*;
     use kestirim_telemetry::{CAPACITY, Range, Receiver, encode};
 
-    /// What comes out of frames with these numbers, of which there is one a hundredth of a second.
+    /// The order in which frames with these numbers are released, and how many are left out; there is one frame every
+    /// hundredth of a second.
     fn sorted(numbers: impl IntoIterator<Item = u16>) -> (Vec<u64>, u64) {
         let (mut receiver, mut sorter, mut out) = (Receiver::new(), Sorter::default(), Vec::new());
         let mut sink = |message: &Message| {
@@ -187,7 +188,7 @@ mod tests {
     #[test]
     fn another_sender_is_left_out_and_one_that_began_anew_is_not() {
         let both = (0..200).flat_map(|number| [number, number + 30_000]);
-        // The last of them may be a beginning.
+        // The last of them may be the start of a restarted sender.
         assert_eq!(sorted(both), ((0..200).chain([30_199]).collect(), 199));
         let anew = (5000..5100).chain(0..5);
         assert_eq!(sorted(anew), ((5000..5100).chain(0..5).collect(), 0));

@@ -1,4 +1,4 @@
-//! The state as facts and figures.
+//! The presentation of the state as facts and figures.
 
 use kestirim_telemetry::Health;
 
@@ -8,14 +8,14 @@ use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::STANDARD_GRAVITY;
 use crate::system::Panel;
 
-/// What a time axis is called: it is the sender's.
+/// The label of time axes, which show the sender's time.
 const TIME: &str = "sender's time, s";
 const AXES: [&str; 3] = ["x", "y", "z"];
-/// What the sender's own estimate is drawn in.
+/// The colour of the sender's own estimate.
 const SENDERS: Colour = Colour::Other(3);
 
 impl State {
-    /// Numbers with their units, by name.
+    /// Results by name, with their units.
     pub(super) fn all_facts(&self) -> Vec<(String, String)> {
         let counts = self.totals();
         let mut facts = vec![
@@ -48,7 +48,7 @@ impl State {
         named.chain(self.facts.iter().cloned()).collect()
     }
 
-    /// Always the same ones for a system.
+    /// The figures, always the same ones for a system.
     pub(super) fn figures(&self) -> Vec<Figure> {
         let figure = |panel: &Panel| match panel {
             Panel::Map => self.map_figure(),
@@ -170,7 +170,7 @@ impl State {
     }
 }
 
-/// More are not told apart.
+/// The maximum number of anchors that are drawn apart.
 const MOST_ANCHORS: usize = 16;
 
 fn times<T>(window: &Window<T>) -> Vec<f64> {

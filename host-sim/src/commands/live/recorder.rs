@@ -1,4 +1,4 @@
-//! Writes down what arrives, before anybody looks at it.
+//! Records what arrives, before anything processes it.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
@@ -7,13 +7,13 @@ use std::time::SystemTime;
 
 use crate::Error;
 
-/// Where recordings go that nobody gave a name.
+/// The folder of recordings for which no file is given.
 const FOLDER: &str = "target/live";
-/// Recordings of one second that find a name.
+/// The maximum number of recordings begun in the same second that are given distinct names.
 const MOST_A_SECOND: u32 = 100;
 
-/// A new file that takes bytes as they come. They are the operating system's at once, so that the end of this
-/// program does not touch them.
+/// A new file that is appended to. The bytes are handed to the operating system at once, so that they survive the end
+/// of this program.
 #[derive(Debug)]
 pub(super) struct Recorder {
     path: PathBuf,
@@ -21,7 +21,7 @@ pub(super) struct Recorder {
 }
 
 impl Recorder {
-    /// Begins a recording of this name, or of one made of date and time.
+    /// Creates a recording at this path, or at one made from date and time.
     pub(super) fn create(path: Option<&Path>) -> Result<Self, Error> {
         match path {
             Some(path) => {
@@ -46,7 +46,7 @@ impl Recorder {
         let folder = Path::new(FOLDER);
         let failed = |path: &Path, source| Error::Write { path: path.to_path_buf(), source };
         fs::create_dir_all(folder).map_err(|source| failed(folder, source))?;
-        // Colons are no part of a file's name everywhere.
+        // Colons are not allowed in file names everywhere.
         let now =
             humantime::format_rfc3339_seconds(SystemTime::now()).to_string().replace(':', "-");
         let mut number = 1;
@@ -64,17 +64,17 @@ impl Recorder {
         }
     }
 
-    /// Which file it is.
+    /// The path of the file.
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The file, to have it written to the disk itself now and then.
+    /// A handle to the file, for syncing it to the disk.
     pub(super) fn file(&self) -> Result<File, Error> {
         self.file.try_clone().map_err(|source| self.failed(source))
     }
 
-    /// Adds what arrived.
+    /// Appends received bytes.
     pub(super) fn append(&mut self, bytes: &[u8]) -> Result<(), Error> {
         self.file.write_all(bytes).map_err(|source| self.failed(source))
     }

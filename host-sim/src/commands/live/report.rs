@@ -1,4 +1,4 @@
-//! What is said at the end.
+//! The report at the end of a stream.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -10,75 +10,75 @@ use super::device::Row;
 use crate::output;
 use crate::text::printable_path;
 
-/// What became of everything that arrived.
+/// Counters of everything that arrived.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Counts {
-    /// Bytes that were decoded; all are in the recording.
+    /// Decoded bytes; all of them are in the recording.
     pub bytes: u64,
-    /// Good frames.
+    /// The number of good frames.
     pub received: u32,
-    /// Pieces between two delimiters that cannot have been a whole frame: cut, too long, or noise.
+    /// Fragments between two delimiters that cannot have been a complete frame: cut, too long, or noise.
     pub torn: u32,
-    /// Frames whose checksum is wrong.
+    /// Frames with a wrong checksum.
     pub corrupt: u32,
-    /// Frames of another version, or with a message that this program does not know.
+    /// Frames of another version, or with an unknown message.
     pub unknown: u32,
-    /// Numbers that are missing between those of the good frames.
+    /// Missing sequence numbers between those of the good frames.
     pub lost: u32,
-    /// Good frames that came twice, too late, or from a second sender.
+    /// Good frames that were duplicates, too late, or from a second sender.
     pub left_out: u64,
-    /// Measurements that the estimator took in.
+    /// Measurements that the estimator used.
     pub taken: u64,
-    /// What arrived whole and cannot be true, or is older than what came before.
+    /// Intact measurements that are implausible or older than earlier ones.
     pub refused: u64,
-    /// How often the sender's clock began anew, and the estimator with it.
+    /// The number of times that the sender's clock restarted, and the estimator with it.
     pub restarts: u32,
 }
 
-/// A device that says who it is.
+/// A device that identifies itself.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DeviceRow {
-    /// Its number.
+    /// The number of the device.
     pub device: u32,
-    /// What became of it.
+    /// The counters and position of the device.
     #[serde(flatten)]
     pub row: Row,
 }
 
 impl DeviceRow {
-    /// All, by their numbers.
+    /// All devices, ordered by number.
     pub(super) fn all(devices: &BTreeMap<u32, Row>) -> Vec<Self> {
         devices.iter().map(|(&device, &row)| Self { device, row }).collect()
     }
 }
 
-/// Devices that the terminal shows.
+/// The maximum number of devices that the terminal shows.
 const SHOWN: usize = 20;
 
-/// What `host-sim live` prints at its end.
+/// The report that `host-sim live` prints at its end.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
-    /// Whose estimator ran; `none` if none did.
+    /// The system whose estimator ran; `none` if none did.
     pub system: &'static str,
-    /// What was listened to.
+    /// The source of the stream.
     pub source: String,
-    /// Where everything is written down.
+    /// The path of the recording.
     pub recording: PathBuf,
-    /// What became of it.
+    /// The counters of the stream.
     pub counts: Counts,
-    /// Those that say who they are; the rest is of the one that is shown in detail.
+    /// The devices that identify themselves; the fields below are those of the device shown in detail.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub devices: Vec<DeviceRow>,
-    /// Where the estimator ended, m.
+    /// The final position estimate (m).
     pub position: Option<[f64; 3]>,
-    /// Of an aeroplane: angle of attack (rad), pitch rate (rad/s), airspeed (m/s) and pitch (rad) at its end.
+    /// For an aeroplane, the final angle of attack (rad), pitch rate (rad/s), airspeed (m/s) and pitch angle (rad).
     pub state: Option<[f64; 4]>,
-    /// Of a walk: its horizontal length from stance to stance, m.
+    /// For a walk, its horizontal length from stance to stance (m).
     pub path_length_m: Option<f64>,
-    /// Of a receiver of satellites: what else the estimator says, by name.
+    /// For a satellite receiver, the estimator's further results by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub facts: BTreeMap<String, String>,
-    /// What a user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 

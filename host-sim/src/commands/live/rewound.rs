@@ -1,4 +1,4 @@
-//! The stream as it was at another moment, or as other settings see it: decoded anew from the recording.
+//! The stream as it was at another moment, or with other settings: decoded again from the recording.
 
 use std::fs::File;
 use std::io::Read;
@@ -14,44 +14,44 @@ use super::state::State;
 use crate::Error;
 use crate::system::{Answer, Settings};
 
-/// Where the answer to a question goes.
+/// The channel for the answer to a question.
 type Reply = Sender<Result<Answer, Error>>;
 
-/// What is asked: settings, how many bytes, whether nothing follows them, and where the answer goes.
+/// A question: the settings, the number of bytes, whether the stream ends there, and the channel for the answer.
 type Question = (Settings, u64, bool, Reply);
 
-/// A thread that decodes a recording anew: an estimator stays with its thread.
+/// A thread that decodes a recording again: an estimator is used only in the thread that created it.
 pub(super) struct Rewinder(Sender<Question>);
 
 impl Rewinder {
-    /// It ends when this is dropped. After the `most` frames no more is decoded.
+    /// Starts the thread, which ends when this is dropped. Decoding stops after `most` frames.
     pub(super) fn begin(path: PathBuf, following: Following, most: Option<u32>) -> Self {
         let (questions, asked) = channel::<Question>();
         let work = move || {
-            // From the last moment that was looked at it may not be far to the next.
+            // The next moment may be shortly after the last one that was shown.
             let mut last: Option<Rewound> = None;
             for (settings, bytes, is_end, reply) in asked {
                 let near = last.take().filter(|it| it.leads_to(bytes, &settings));
                 let near = near.map_or_else(|| Rewound::new(&path, &following, settings, most), Ok);
                 let answer = near.and_then(|mut near| {
                     let answer = near.answer(bytes, is_end, &path);
-                    // What failed, or came to an end, leads nowhere.
+                    // A decoder that failed or was ended cannot continue.
                     last = (answer.is_ok() && !is_end).then_some(near);
                     answer
                 });
-                // Whoever asked may be gone.
+                // The receiver of the answer may have been dropped.
                 let _ = reply.send(answer);
             }
         };
-        // Without a thread nobody takes the questions, and that is told.
+        // If the thread cannot be spawned, asking a question reports that.
         drop(thread::Builder::new().stack_size(crate::STACK_BYTES).spawn(work));
         Self(questions)
     }
 
-    /// What these settings make of so many bytes of the recording, which may be its end.
+    /// The answer for these settings after a number of bytes of the recording, which may be its end.
     ///
     /// # Errors
-    /// Whatever is wrong with the settings or the recording.
+    /// Errors in the settings or the recording.
     pub(super) fn answer(
         &self,
         settings: &Settings,
@@ -65,18 +65,18 @@ impl Rewinder {
     }
 }
 
-/// A decoder with a place in the recording.
+/// A decoder with its position in the recording.
 #[derive(Debug)]
 struct Rewound {
     settings: Settings,
     decoder: Decoder,
     file: File,
-    /// Bytes that were decoded.
+    /// The number of bytes decoded.
     read: u64,
 }
 
 impl Rewound {
-    /// At the recording's beginning.
+    /// A decoder at the beginning of the recording.
     fn new(
         path: &Path,
         following: &Following,
@@ -94,15 +94,15 @@ impl Rewound {
         })
     }
 
-    /// Whether it need not begin anew to be so many bytes on, with these settings.
+    /// Whether the decoder can continue to this number of bytes with these settings.
     fn leads_to(&self, bytes: u64, settings: &Settings) -> bool {
         self.read <= bytes && self.settings == *settings
     }
 
-    /// What there is to see after so many bytes.
+    /// The answer after a number of bytes.
     ///
     /// # Errors
-    /// [`Error::Read`] if the recording, `path`, cannot be read; as [`Decoder::take`].
+    /// [`Error::Read`] if the recording, `path`, cannot be read; otherwise those of [`Decoder::take`].
     fn answer(&mut self, bytes: u64, is_end: bool, path: &Path) -> Result<Answer, Error> {
         let mut buffer = [0; BATCH];
         while self.read < bytes {
@@ -123,7 +123,7 @@ impl Rewound {
         if is_end {
             self.decoder.finish()?;
         } else {
-            // What takes long is looked at, too.
+            // The pause gives the estimator time for lengthy work, whose result is shown as well.
             self.decoder.pause()?;
         }
         Ok(self.decoder.answer())

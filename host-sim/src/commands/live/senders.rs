@@ -1,26 +1,26 @@
-//! Whose datagrams are taken, where several come to one port.
+//! The choice of a sender where several send to one port.
 
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
-/// After such a silence of the sender that is followed another one is.
+/// The silence of the sender that is followed after which another takes its place.
 const SILENCE: Duration = Duration::from_secs(2);
 
-/// Addresses that send to one port.
+/// The addresses that send to one port.
 ///
-/// A sender may change its address: one that is switched on again, or that opens a socket for each datagram. Then the
-/// address before is heard no more. Once it is heard again, there are two senders, and only the first is followed.
+/// A sender may change its address: when it is restarted, or if it opens a socket for each datagram. Its former address
+/// is then not heard again. If it is, there are two senders, and only the first is followed.
 #[derive(Debug, Default)]
 pub(super) struct Senders {
     followed: Option<SocketAddr>,
     heard: Option<Instant>,
-    /// Whether another address was heard since the one that is followed.
+    /// Whether another address has been heard since the one that is followed.
     another: bool,
     several: bool,
 }
 
 impl Senders {
-    /// Whether a datagram from this address is taken.
+    /// Whether a datagram from this address is accepted.
     pub(super) fn takes(&mut self, from: SocketAddr, now: Instant) -> bool {
         let followed = *self.followed.get_or_insert(from);
         if from == followed {
@@ -55,7 +55,7 @@ mod tests {
             senders.takes(address(port), start + Duration::from_millis(ms))
         };
         assert!(takes(&mut senders, 1, 0));
-        // Not known yet to be another.
+        // It is not yet known to be another sender.
         assert!(takes(&mut senders, 2, 1));
         for ms in 2..50 {
             assert!(takes(&mut senders, 1, 2 * ms));

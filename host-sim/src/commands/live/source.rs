@@ -1,4 +1,4 @@
-//! Where bytes come from.
+//! The sources of live bytes.
 
 use std::net::{SocketAddr, UdpSocket};
 use std::path::{Path, PathBuf};
@@ -16,19 +16,19 @@ use crate::commands::datagrams::{self, PATIENCE, is_silence};
 /// A line that is listened to.
 #[derive(Debug)]
 pub(super) enum Source {
-    /// Datagrams, in each of which there are frames or pieces of some; and how many of other senders were ignored.
+    /// Datagrams that hold frames or fragments of frames, and the number of ignored datagrams from other senders.
     Udp(UdpSocket, Senders, Arc<AtomicU64>),
     /// A serial port.
     Serial(SerialPort, PathBuf),
 }
 
 impl Source {
-    /// Listens to datagrams for this address; those of a second sender are counted in `ignored`.
+    /// Receives datagrams at this address; those of a second sender are counted in `ignored`.
     pub(super) fn udp(address: &str, ignored: Arc<AtomicU64>) -> Result<Self, Error> {
         Ok(Self::Udp(datagrams::listen(address)?, Senders::default(), ignored))
     }
 
-    /// Listens to a serial port.
+    /// Receives from a serial port.
     pub(super) fn serial(device: &Path, baud: u32) -> Result<Self, Error> {
         let opened = SerialPort::open(device, baud).and_then(|mut port| {
             port.set_read_timeout(PATIENCE)?;
@@ -39,7 +39,7 @@ impl Source {
             .map_err(|source| Error::Read { path: device.to_path_buf(), source })
     }
 
-    /// At which address it can be sent to, if it is one of a network.
+    /// The network address of the source, if it has one.
     pub(super) fn address(&self) -> Option<SocketAddr> {
         match self {
             Self::Udp(socket, ..) => socket.local_addr().ok(),
@@ -47,10 +47,10 @@ impl Source {
         }
     }
 
-    /// Waits a little for bytes. None is the end of the line; no bytes are none for now.
+    /// Waits briefly for bytes. `None` is the end of the line; an empty slice means that none have arrived yet.
     pub(super) fn read<'a>(&mut self, buffer: &'a mut [u8]) -> Result<Option<&'a [u8]>, Error> {
         let read = match self {
-            // An empty datagram is no end.
+            // An empty datagram does not end the stream.
             Self::Udp(socket, senders, ignored) => socket.recv_from(buffer).map(|(count, from)| {
                 let datagram = buffer.get(..count).unwrap_or_default();
                 let taken = says_who_sends(datagram) || senders.takes(from, Instant::now());
@@ -66,7 +66,7 @@ impl Source {
         }
     }
 
-    /// What a person calls it.
+    /// The name of the source for people.
     pub(super) fn name(&self) -> String {
         match self {
             Self::Udp(..) => match self.address() {
@@ -78,9 +78,9 @@ impl Source {
     }
 }
 
-/// Whether a datagram begins with a frame that says who sends it: many such senders share a port.
+/// Whether a datagram begins with a frame that identifies its sender: many such senders may share a port.
 fn says_who_sends(datagram: &[u8]) -> bool {
-    // A delimiter, the place of the first zero, which is behind the version, and the version.
+    // A delimiter, the offset of the first zero, which lies after the version, and the version.
     matches!(datagram, [0, zero, VERSION_OF_FLEETS, ..] if *zero >= 2)
 }
 

@@ -1,7 +1,7 @@
-//! The recording as a queue: what is written to it at one end is read from it at the other.
+//! The recording as a queue: written at one end and read at the other.
 //!
-//! So nothing is decoded that is not in the file, memory does not grow however far the estimator is behind, and
-//! nobody waits who receives.
+//! So nothing is decoded that is not in the file, memory does not grow however far the estimator is behind, and the
+//! receiver never waits.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -11,10 +11,10 @@ use std::time::Duration;
 
 use crate::text::regular;
 
-/// A reader looks up this often while nothing comes.
+/// The interval at which a waiting reader returns if nothing arrives.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// How much of a recording there is.
+/// The length of a growing recording.
 #[derive(Debug, Default)]
 pub(super) struct Tape {
     extent: Mutex<Extent>,
@@ -24,18 +24,18 @@ pub(super) struct Tape {
 #[derive(Debug, Default)]
 struct Extent {
     bytes: u64,
-    /// Whether nothing more will come.
+    /// Whether nothing more will be written.
     complete: bool,
 }
 
 impl Tape {
-    /// So many more bytes are in the file.
+    /// Announces more bytes in the file.
     pub(super) fn grow(&self, bytes: usize) {
         self.extent().bytes += bytes as u64;
         self.news.notify_all();
     }
 
-    /// Nothing more will come.
+    /// Announces that nothing more will be written.
     pub(super) fn complete(&self) {
         self.extent().complete = true;
         self.news.notify_all();
@@ -45,7 +45,7 @@ impl Tape {
         self.extent.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits until there is something beyond `read`; how much there is, or nothing for now.
+    /// Waits until the recording extends beyond `read`; returns its length, or a pause if nothing arrives.
     fn beyond(&self, read: u64) -> Piece<u64> {
         let waiting = |extent: &mut Extent| extent.bytes <= read && !extent.complete;
         let extent = self
@@ -61,39 +61,39 @@ impl Tape {
     }
 }
 
-/// What a reader finds.
+/// The result of reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Piece<T> {
-    /// Something.
+    /// Data is available.
     Some(T),
-    /// Nothing for half a second.
+    /// Nothing has arrived for half a second.
     Pause,
-    /// Nothing, and nothing more will come.
+    /// The recording has ended.
     End,
 }
 
-/// Reads a recording from its beginning, perhaps while it is written.
+/// Reads a recording from its beginning, possibly while it is being written.
 #[derive(Debug)]
 pub(super) struct Reel {
     file: File,
-    /// None if the recording was complete before.
+    /// The queue; `None` if the recording is complete.
     tape: Option<Arc<Tape>>,
     read: u64,
 }
 
 impl Reel {
-    /// Of a recording that is being written.
+    /// Opens a recording that is being written.
     pub(super) fn growing(path: &Path, tape: Arc<Tape>) -> io::Result<Self> {
         Ok(Self { file: File::open(path)?, tape: Some(tape), read: 0 })
     }
 
-    /// Of a recording that was made before.
+    /// Opens a complete recording.
     pub(super) fn complete(path: &Path) -> io::Result<Self> {
         regular(path)?;
         Ok(Self { file: File::open(path)?, tape: None, read: 0 })
     }
 
-    /// The next bytes.
+    /// Reads the next bytes.
     pub(super) fn next<'a>(&mut self, buffer: &'a mut [u8]) -> io::Result<Piece<&'a [u8]>> {
         let available = match self.tape.as_ref().map(|tape| tape.beyond(self.read)) {
             Some(Piece::End) => return Ok(Piece::End),
@@ -110,7 +110,7 @@ impl Reel {
             }
         };
         self.read += count as u64;
-        // A file that somebody cuts while it is read has ended, too.
+        // A file that is truncated while it is read has ended as well.
         Ok(if count == 0 { Piece::End } else { Piece::Some(&piece[..count]) })
     }
 }
@@ -131,7 +131,7 @@ mod tests {
         file.write_all(b"abcdef")?;
         tape.grow(5);
         assert_eq!(reel.next(&mut buffer)?, Piece::Some(&b"abcd"[..]));
-        // The sixth byte is there, but nobody has said so.
+        // The sixth byte is in the file but has not been announced.
         assert_eq!(reel.next(&mut buffer)?, Piece::Some(&b"e"[..]));
         assert_eq!(reel.next(&mut buffer)?, Piece::Pause);
         tape.grow(1);

@@ -1,18 +1,18 @@
-//! A long path in little memory.
+//! A long path in bounded memory.
 
-/// Values in their order, of which fewer are kept the more there are: at any time evenly many, and the last.
+/// Values in order, thinned out as their number grows: those kept are always evenly spaced, and the last is included.
 #[derive(Debug, Clone)]
 pub(crate) struct Thinned<T> {
     kept: Vec<T>,
     most: usize,
-    /// One in so many is kept.
+    /// One in this many values is kept.
     stride: u64,
     count: u64,
     last: Option<T>,
 }
 
 impl<T: Copy> Thinned<T> {
-    /// Of at most so many values, and the last; at least two.
+    /// An empty sequence that keeps at most `most` values, but at least two, besides the last.
     pub(crate) fn new(most: usize) -> Self {
         Self { kept: Vec::new(), most: most.max(2), stride: 1, count: 0, last: None }
     }
@@ -35,12 +35,12 @@ impl<T: Copy> Thinned<T> {
         self.count += 1;
     }
 
-    /// Whether the next value is one that is kept.
+    /// Whether the next value is to be kept.
     fn is_due(&self) -> bool {
         self.count.is_multiple_of(self.stride)
     }
 
-    /// The values that are left, and the last.
+    /// The kept values, followed by the last one.
     pub(crate) fn iter(&self) -> impl Iterator<Item = T> {
         self.kept.iter().copied().chain(self.last)
     }

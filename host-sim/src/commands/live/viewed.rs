@@ -1,4 +1,4 @@
-//! What a page shows of a stream: as it is now, as it was, or as other settings see it.
+//! The view of a stream on a page: as it is now, as it was, or with other settings.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -12,22 +12,22 @@ use crate::commands::serve::{Moment, Show};
 use crate::system::{Answer, Settings};
 use crate::text::printable_path;
 
-/// A stream, for whoever looks on.
+/// The view of a stream.
 pub(super) struct Viewed {
     pub(super) state: Arc<Mutex<State>>,
     pub(super) following: Following,
     pub(super) source: String,
     pub(super) recording: PathBuf,
-    /// Frames that are enough.
+    /// The number of frames after which decoding stops.
     pub(super) most: Option<u32>,
-    /// Stopped when nothing more comes.
+    /// Stopped when nothing more arrives.
     pub(super) stop: Stopper,
-    /// Who decodes it anew.
+    /// The thread that decodes the recording again, once it is needed.
     pub(super) rewinder: OnceLock<Rewinder>,
 }
 
 impl Viewed {
-    /// What there is to see now.
+    /// The present answer.
     pub(super) fn now(&self) -> Answer {
         self.with_names(self.state.lock().unwrap_or_else(PoisonError::into_inner).answer())
     }

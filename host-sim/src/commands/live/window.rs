@@ -1,13 +1,13 @@
-//! The last half minute.
+//! A window of the last half minute.
 
 use std::collections::VecDeque;
 
-/// How long it is, µs.
+/// The length of the window, in microseconds.
 const SPAN_US: u64 = 30_000_000;
-/// Samples that it holds: those of 400 Hz.
+/// The maximum number of samples: 30 s at 400 Hz.
 const MOST: usize = 12_000;
 
-/// The samples of the last 30 s of the sender's clock; fewer if they are more than any sender sends.
+/// The samples of the last 30 s of the sender's clock; fewer if they exceed the maximum number.
 #[derive(Debug, Clone)]
 pub(super) struct Window<T>(VecDeque<(u64, T)>);
 
@@ -32,7 +32,7 @@ impl<T> Window<T> {
         self.0.back().map(|(_, sample)| sample)
     }
 
-    /// Times, s, and samples.
+    /// The samples with their times in seconds.
     pub(super) fn iter(&self) -> impl Iterator<Item = (f64, &T)> {
         self.0.iter().map(|(time_us, sample)| (*time_us as f64 * 1e-6, sample))
     }

@@ -1,4 +1,4 @@
-//! What the page asks.
+//! The requests of the page.
 
 use std::fmt::Display;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use super::{Shared, compare, downloads, question};
 use crate::Error;
 use crate::system::{AnySystem, Files, Reading, Setting, Settings, Source};
 
-/// One plain sentence, as on the command line.
+/// An error response: one plain sentence, as on the command line.
 pub(super) struct Refusal(pub(super) StatusCode, pub(super) String);
 
 impl Refusal {
@@ -25,7 +25,7 @@ impl Refusal {
         Self(StatusCode::UNPROCESSABLE_ENTITY, format!("{problem}"))
     }
 
-    /// For an address that outlived its files.
+    /// The response for an address whose files have been deleted.
     pub(super) fn gone() -> Self {
         let sentence = "these files are no longer kept here: open them again";
         Self(StatusCode::GONE, sentence.to_owned())
@@ -48,7 +48,7 @@ pub(super) fn reply(value: &Value) -> Response {
     ([(CONTENT_TYPE, "application/json")], value.to_string()).into_response()
 }
 
-/// Everything that can be opened.
+/// Lists everything that can be opened.
 pub(super) async fn sources(State(shared): State<Arc<Shared>>) -> Response {
     let source = |system: &&dyn AnySystem| {
         json!({
@@ -68,7 +68,7 @@ pub(super) async fn sources(State(shared): State<Arc<Shared>>) -> Response {
     reply(&json!({ "live": live, "sources": sources, "largest": LARGEST }))
 }
 
-/// Opens a recording that has a name.
+/// Opens a synthetic recording by name.
 pub(super) async fn open_named(
     State(shared): State<Arc<Shared>>,
     InPath((system, recording)): InPath<(String, String)>,
@@ -79,7 +79,7 @@ pub(super) async fn open_named(
     Ok(reply(&controls(system, &name, &opened)))
 }
 
-/// Opens files that the page uploads.
+/// Opens files uploaded by the page.
 pub(super) async fn open_files(
     State(shared): State<Arc<Shared>>,
     InPath(name): InPath<String>,
@@ -109,11 +109,11 @@ pub(super) async fn open_files(
     Ok(reply(&open_kept(&shared, system, files, folder, content).await?))
 }
 
-/// Opens files that lie in a folder, and keeps them.
+/// Opens files in a folder and keeps them.
 ///
 /// # Errors
-/// What cannot be used is refused when it is opened, not when a control is moved; but what a control can say is asked for
-/// beside the controls.
+/// Unusable files are refused when they are opened, not when a control is moved; but a missing setting that a control
+/// can supply is asked for beside the controls.
 pub(super) async fn open_kept(
     shared: &Shared,
     system: &'static dyn AnySystem,
@@ -140,11 +140,11 @@ pub(super) async fn open_kept(
     Ok(controls(system, &name, &opened))
 }
 
-/// What an open recording is called, what can be set of it and what can be had of it.
+/// The name of an open recording, its controls and its downloads.
 fn controls(system: &dyn AnySystem, recording: &str, open: &Recording) -> Value {
     let Recording { opened, files, .. } = open;
     let controls: Vec<_> = opened.settings().iter().map(Setting::control).collect();
-    // What is wrong with the settings the answer says.
+    // Errors in the settings are reported by the answer.
     let findings = opened.check(&Settings::new(opened.settings())).unwrap_or_default();
     json!({
         "system": system.name(),
@@ -156,7 +156,7 @@ fn controls(system: &dyn AnySystem, recording: &str, open: &Recording) -> Value 
     })
 }
 
-/// Whether a refusal names the option of a setting.
+/// Whether an error names the option of a setting.
 fn asks_for_a_setting(error: &Error, settings: &[Setting]) -> bool {
     let sentence = error.to_string();
     let is_of_name = |letter: char| letter.is_ascii_lowercase() || letter == '-';
@@ -167,7 +167,7 @@ fn asks_for_a_setting(error: &Error, settings: &[Setting]) -> bool {
     named.any(|name| settings.iter().any(|setting| setting.name == name))
 }
 
-/// What comes out as the controls stand.
+/// Computes the answer for the present controls.
 pub(super) async fn answer(
     State(shared): State<Arc<Shared>>,
     InPath((system, recording)): InPath<(String, String)>,
@@ -198,7 +198,7 @@ pub(super) fn find(shared: &Shared, name: &str) -> Result<&'static dyn AnySystem
     found.ok_or_else(|| Refusal::of(format!("there is no system {name:?}")))
 }
 
-/// Computes on a thread of its own, so that the page stays answered.
+/// Runs work on a blocking thread, so that the server stays responsive.
 pub(super) async fn beside<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, Refusal> + Send + 'static,
 ) -> Result<T, Refusal> {

@@ -1,4 +1,4 @@
-//! The page's own files, which are part of the program.
+//! The page's own files, which are embedded in the program.
 
 use axum::Router;
 use axum::http::header::CONTENT_TYPE;

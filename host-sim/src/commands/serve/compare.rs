@@ -1,4 +1,4 @@
-//! Two answers beside each other.
+//! Comparison of two answers.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,20 +6,20 @@ use super::question::Asked;
 use crate::figure::Figure;
 use crate::system::{Answer, Setting, Settings};
 
-/// How they are drawn.
+/// How the two answers are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum How {
-    /// Both in one figure.
+    /// Both in the same figure.
     Over,
-    /// The later less the earlier.
+    /// The later minus the earlier.
     Difference,
 }
 
-/// What they are called.
+/// The names of the two answers.
 const NAMES: [&str; 2] = ["A", "B"];
 
-/// Figures of both: of those that both have.
+/// The combined figures, for those that both answers have.
 pub(super) fn figures(a: &Answer, b: &Answer, how: How) -> Vec<Figure> {
     let pairs = b.figures.iter().filter_map(|ours| {
         let theirs = a.figures.iter().find(|theirs| theirs.id == ours.id)?;
@@ -31,11 +31,11 @@ pub(super) fn figures(a: &Answer, b: &Answer, how: How) -> Vec<Figure> {
     pairs.collect()
 }
 
-/// A row of the table of what changed: what it is, and how it stands in both.
+/// A row of the table of changes: the name, and the value in each answer.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub(super) struct Row(String, String, String);
 
-/// Settings and numbers in which they differ.
+/// The settings and results in which the two differ.
 pub(super) fn changed(a: &Asked, b: &Asked) -> Vec<Row> {
     rows((&a.settings, &a.answer), (&b.settings, &b.answer))
 }
@@ -50,7 +50,7 @@ fn rows(a: (&Settings, &Answer), b: (&Settings, &Answer)) -> Vec<Row> {
         b.0.table()
             .iter()
             .map(|setting| Row(setting.help.to_owned(), value(a.0, setting), value(b.0, setting)));
-    // Several facts may have one name: each is told apart by how many there were before it.
+    // Several facts may share a name: each is identified by the number of those before it.
     let numbered = |answer: &Answer| -> Vec<((String, usize), String)> {
         let before = |place: usize, name: &str| {
             answer.facts[..place].iter().filter(|(known, _)| known == name).count()

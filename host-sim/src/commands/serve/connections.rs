@@ -1,4 +1,4 @@
-//! Connections, each for as long as it asks.
+//! HTTP connections.
 
 use std::time::Duration;
 
@@ -9,14 +9,14 @@ use hyper_util::service::TowerToHyperService;
 use tokio::net::TcpListener;
 use tokio::time::sleep;
 
-/// Whoever has not said within this time what is asked for is not answered.
+/// The timeout for receiving the header of a request.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// Before the next try if no connection can be had: too many are open.
+/// The pause before the next attempt if no connection can be accepted because too many are open.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Answers whoever asks, until it is dropped.
+/// Serves requests until it is dropped.
 ///
-/// `axum::serve` waits for ever for a request that does not end.
+/// In contrast, `axum::serve` waits for ever for a request that does not end.
 pub(in crate::commands) async fn serve(listener: TcpListener, router: Router) {
     let mut builder = Builder::new();
     builder.timer(TokioTimer::new()).header_read_timeout(PATIENCE);
@@ -28,7 +28,7 @@ pub(in crate::commands) async fn serve(listener: TcpListener, router: Router) {
         let service = TowerToHyperService::new(router.clone());
         let connection = builder.serve_connection(TokioIo::new(stream), service).with_upgrades();
         tokio::spawn(async move {
-            // Whoever asked has gone, or asked nothing that can be answered.
+            // The client has disconnected, or its request could not be answered.
             let _ = connection.await;
         });
     }

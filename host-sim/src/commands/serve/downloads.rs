@@ -1,4 +1,4 @@
-//! What a session gives away: tracks, streams, figures, and the session itself as a page of its own.
+//! Downloads of a session: tracks, streams, figures, and the session itself as a self-contained page.
 
 use std::fs;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use crate::system::{AnySystem, Wanted};
 const STREAMS: &str = "streams.mcap";
 const SESSION: &str = "session.html";
 
-/// Names of what can be had of any recording of a system, but for its figures.
+/// The names of the downloads available for any recording of a system, except for figures.
 pub(super) fn names(system: &dyn AnySystem) -> impl Iterator<Item = String> {
     let tables = system
         .outputs()
@@ -26,7 +26,7 @@ pub(super) fn names(system: &dyn AnySystem) -> impl Iterator<Item = String> {
     tables.chain([STREAMS, SESSION].map(str::to_owned))
 }
 
-/// A file as the controls stand: one of the [`names`], or `figure-ID.svg` and `figure-ID.csv`.
+/// Serves a file for the present controls: one of the [`names`], or `figure-ID.svg` and `figure-ID.csv`.
 pub(super) async fn download(
     State(shared): State<Arc<Shared>>,
     Path((system, recording, file)): Path<(String, String, String)>,

@@ -1,4 +1,4 @@
-//! Files that are dropped on the page: whose they are is found.
+//! Files dropped on the page, whose system is recognised.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -14,10 +14,10 @@ use super::{Shared, zipped};
 use crate::system::{AnySystem, Files, Recognised};
 use crate::text::file_name;
 
-/// A folder with more files is not one of recordings.
+/// The maximum number of files: a folder with more is not one of recordings.
 const MOST_FILES: usize = 500;
 
-/// Opens the recording that files make, of the `preferred` system where they could be of several.
+/// Opens the recording that the files form, as one of the `preferred` system if several could read them.
 pub(super) async fn open(
     State(shared): State<Arc<Shared>>,
     InPath(preferred): InPath<String>,
@@ -47,7 +47,8 @@ pub(super) async fn open(
     Ok(reply(&opened))
 }
 
-/// Whose files these are. What is in a zip file counts as dropped, unless it is a log itself.
+/// Recognises the system of the files. The contents of a zip file count as dropped, unless the zip file is a log
+/// itself.
 fn recognised(
     systems: &[&'static dyn AnySystem],
     preferred: &str,

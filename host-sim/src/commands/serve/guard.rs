@@ -1,4 +1,4 @@
-//! Who may ask: this machine's own page, opened by whoever was told the key.
+//! Access control: only this machine's own page, opened by a user who has the key.
 
 use std::net::SocketAddr;
 
@@ -13,15 +13,15 @@ use axum::response::{IntoResponse, Response};
 
 use super::key::Key;
 
-/// The page fetches from where it came from, and from nowhere else. Plotly styles its elements in place.
+/// The content security policy: the page fetches only from its own server. Plotly sets inline styles.
 const POLICY: HeaderValue = HeaderValue::from_static(
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; connect-src 'self'; img-src data: blob:; \
      base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
 );
-/// Before the key, in the address that is printed.
+/// The query parameter for the key in the address that is printed.
 const QUERY: &str = "token=";
 
-/// What is to be known of a page to tell whether somebody may ask.
+/// The data needed to decide whether a request is allowed.
 #[derive(Debug, Clone)]
 pub(super) struct Guard {
     pub(super) address: SocketAddr,
@@ -29,13 +29,13 @@ pub(super) struct Guard {
 }
 
 impl Guard {
-    /// The page's address with the key. Whoever opens it is given the key as a cookie, and sent on to an address that does
-    /// not hold it: that one may be shown to others.
+    /// The page's address with the key. Opening it sets the key as a cookie and redirects to an address without the
+    /// key, which may be shown to others.
     pub(super) fn address(&self) -> String {
         format!("http://{}/?{QUERY}{}", self.address, self.key)
     }
 
-    /// The cookie's name. Browsers do not tell the ports of a machine apart.
+    /// The cookie's name, which contains the port as browsers do not separate cookies by port.
     fn cookie(&self) -> String {
         format!("kestirim-{}", self.address.port())
     }
@@ -50,7 +50,7 @@ impl Guard {
             .any(|(known, value)| known == name && self.key.is(value))
     }
 
-    /// Whether this is the printed address.
+    /// Whether the request is for the printed address with the right key.
     fn is_handed_over(&self, request: &Request) -> bool {
         let query = request.uri().query().and_then(|query| query.strip_prefix(QUERY));
         request.uri().path() == "/" && query.is_some_and(|text| self.key.is(text))
@@ -67,20 +67,20 @@ impl Guard {
         (StatusCode::SEE_OTHER, headers).into_response()
     }
 
-    /// Whether a header names this server, or is not there.
+    /// Whether a header names this server or is absent.
     fn is_ours(&self, request: &Request, header: HeaderName) -> bool {
         let address = self.address;
         let Some(value) = request.headers().get(header) else { return true };
         let name = value.to_str().unwrap_or_default().trim_start_matches("http://");
-        // On port 80 browsers leave it out.
+        // Browsers omit port 80.
         let bare = address.port() == 80
             && [address.ip().to_string().as_str(), "localhost"].contains(&name);
         bare || name == address.to_string() || name == format!("localhost:{}", address.port())
     }
 }
 
-/// Refuses what a foreign page sends, by a name that leads here (the host) or to here (the origin), and whoever does not
-/// have the key: another user of this machine.
+/// Refuses requests from foreign pages, detected by the host name or the origin, and from other users of this machine,
+/// who do not have the key.
 pub(super) async fn only_with_key(
     State(guard): State<Guard>,
     request: Request,

@@ -1,23 +1,23 @@
-//! The key to a page: random, as long as the program runs.
+//! The access key of a page: random, and valid while the program runs.
 
 use std::fmt;
 
-/// 128 random bits.
+/// A key of 128 random bits.
 #[derive(Clone, Copy)]
 pub(super) struct Key([u8; 16]);
 
 impl Key {
-    /// A new one.
+    /// Generates a new key.
     ///
     /// # Errors
-    /// If the operating system has no random numbers.
+    /// If the operating system cannot supply random numbers.
     pub(super) fn random() -> Result<Self, getrandom::Error> {
         let mut bytes = [0; 16];
         getrandom::fill(&mut bytes)?;
         Ok(Self(bytes))
     }
 
-    /// Whether a text is this key. The time that it takes does not tell how much of it is right.
+    /// Whether a text is this key. The duration of the comparison does not reveal how much of the text is right.
     pub(super) fn is(&self, text: &str) -> bool {
         let own = self.to_string();
         let differing = |wrong: u8, (a, b): (u8, u8)| wrong | (a ^ b);
@@ -25,7 +25,7 @@ impl Key {
     }
 }
 
-/// Not for a log.
+/// Hides the key, which must not appear in a log.
 impl fmt::Debug for Key {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Key")

@@ -1,6 +1,6 @@
-//! `host-sim serve`: the explorer, a page on this machine alone.
+//! `host-sim serve`: the explorer, a page for this machine only.
 //!
-//! The page sends how its controls stand; the estimators run here.
+//! The page sends the state of its controls; the estimators run in this program.
 
 mod api;
 mod assets;
@@ -36,31 +36,31 @@ use crate::system::{Answer, AnySystem, Settings};
 use crate::systems::ALL;
 use crate::{Error, output};
 
-/// A stream that is shown while it comes.
+/// A live stream that a page can show.
 pub trait Show: Send + Sync {
-    /// What can be set, and what is.
+    /// The settings with their present values.
     fn settings(&self) -> Settings;
 
-    /// How much of it there is.
+    /// The number of bytes of the stream so far.
     fn bytes(&self) -> u64;
 
-    /// What there is to see of it at a moment, with these settings.
+    /// The answer at a moment of the stream, with these settings.
     ///
     /// # Errors
-    /// One sentence, if the settings give nothing.
+    /// A one-sentence error if the settings give no result.
     fn answer(&self, settings: &Settings, moment: Moment) -> Result<Answer, Error>;
 }
 
-/// When a stream is looked at.
+/// A moment of a stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Moment {
-    /// As it is.
+    /// The present.
     Now,
-    /// As it was after so many bytes.
+    /// The moment after this number of bytes.
     After(u64),
 }
 
-/// The page's port unless told otherwise.
+/// The default port of the page.
 pub const PORT: u16 = 8017;
 
 /// Options of the command.
@@ -72,10 +72,10 @@ pub struct Serve {
 }
 
 impl Serve {
-    /// Serves the page until it is interrupted.
+    /// Serves the page until the program is interrupted.
     ///
     /// # Errors
-    /// [`Error::Usage`] if the port or a folder for uploads cannot be had.
+    /// [`Error::Usage`] if the port or a folder for uploads is not available.
     pub fn run(self) -> Result<(), Error> {
         let folder = tempfile::tempdir()
             .map_err(|error| Error::Usage(format!("no folder for uploads: {error}")))?;
@@ -83,7 +83,7 @@ impl Serve {
         let shared = Shared { systems: &ALL, sessions: Sessions::default(), live: None, uploads };
         let interrupted = Arc::new(Notify::new());
         let interrupt = Arc::clone(&interrupted);
-        // Without it a signal ends the program at once, and the folder stays.
+        // Without a handler a signal ends the program at once and leaves the folder behind.
         let _ = ctrlc::set_handler(move || interrupt.notify_one());
         let runtime = runtime()?;
         let ended = runtime.block_on(async {
@@ -95,13 +95,13 @@ impl Serve {
             }
             Ok(())
         });
-        // Nobody waits for what is still being computed.
+        // Computations that are still running are not awaited.
         runtime.shutdown_background();
         ended
     }
 }
 
-/// The page of a stream, beside whatever else the program does; it ends with this.
+/// The page of a stream, served in the background until this is dropped.
 #[derive(Debug)]
 pub struct Page {
     runtime: Runtime,
@@ -110,17 +110,17 @@ pub struct Page {
 }
 
 impl Page {
-    /// Takes the port; nobody is answered yet.
+    /// Binds the port without answering requests yet.
     ///
     /// # Errors
-    /// [`Error::Usage`] if it cannot be had.
+    /// [`Error::Usage`] if the port is not available.
     pub fn bind(port: u16) -> Result<Self, Error> {
         let runtime = runtime()?;
         let (listener, guard) = runtime.block_on(bind(port))?;
         Ok(Self { runtime, listener: Some(listener), guard })
     }
 
-    /// Shows what `live` says.
+    /// Starts serving the page with this stream.
     pub fn show(&mut self, live: Arc<dyn Show>) {
         let Some(listener) = self.listener.take() else { return };
         let (systems, sessions) = (&[], Sessions::default());
@@ -128,19 +128,19 @@ impl Page {
         self.runtime.spawn(connections::serve(listener, router(shared, self.guard.clone())));
     }
 
-    /// Where it is, with the key to it.
+    /// The address of the page, including its key.
     pub fn address(&self) -> String {
         self.guard.address()
     }
 }
 
-/// What all requests have in common.
+/// The data shared by all requests.
 struct Shared {
     systems: &'static [&'static dyn AnySystem],
     sessions: Sessions,
-    /// Where there is a stream to show.
+    /// The stream to show, if there is one.
     live: Option<Arc<dyn Show>>,
-    /// Where files can be opened.
+    /// The upload folders, if files can be opened.
     uploads: Option<Uploads>,
 }
 
@@ -152,7 +152,7 @@ fn runtime() -> Result<Runtime, Error> {
         .map_err(|error| Error::Usage(format!("no threads: {error}")))
 }
 
-/// Listens where nobody but this machine can ask, and nobody there who was not told the key.
+/// Binds a port that only this machine reaches, and there only users who have the key.
 async fn bind(port: u16) -> Result<(TcpListener, Guard), Error> {
     let bound = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).await;
     let (listener, address) = bound

@@ -1,4 +1,4 @@
-//! What the page asks, and what is answered.
+//! The page's questions and their answers.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -14,27 +14,27 @@ use super::sessions::Recording;
 use crate::figure::{Figure, View, plotly};
 use crate::system::{Answer, AnySystem, Finding, Settings, Wanted};
 
-/// As many as a figure of the page has columns of pixels, about.
+/// The maximum number of points of a series: about as many as a figure has columns of pixels.
 const MOST_POINTS: usize = 700;
-/// Rows of a table of the page: more would be drawn slowly, and nobody reads them.
+/// The maximum number of rows of a table: more would be slow to draw, and nobody would read them.
 const MOST_ROWS: usize = 500;
 
-/// How the page stands.
+/// The state of the page.
 #[derive(Debug, Deserialize)]
 pub(super) struct Question {
     pub(super) settings: Map<String, Value>,
-    /// The stretch of time that is looked at, s.
+    /// The time window that is shown, in seconds.
     #[serde(default)]
     pub(super) window: Option<[f64; 2]>,
-    /// Stretches of the horizontal axes of figures that are zoomed in and have no time.
+    /// The visible ranges of the horizontal axes of zoomed figures without a time axis, by id.
     #[serde(default)]
     windows: BTreeMap<String, [f64; 2]>,
-    /// What it is compared with.
+    /// The recording and settings to compare with, if any.
     #[serde(default)]
     a: Option<Compared>,
 }
 
-/// Another recording of the same system, or other settings.
+/// Another recording of the same system, or other settings, to compare with.
 #[derive(Debug, Deserialize)]
 struct Compared {
     recording: String,
@@ -43,10 +43,10 @@ struct Compared {
 }
 
 impl Question {
-    /// What it is compared with, if it is.
+    /// The answer to compare with, if there is one.
     ///
     /// # Errors
-    /// As [`Asked::new`], of the other one.
+    /// Those of [`Asked::new`] for the other answer.
     pub(super) fn other(
         &self,
         shared: &Shared,
@@ -58,10 +58,10 @@ impl Question {
         Ok(Some((other, *how)))
     }
 
-    /// The figures of an answer, or of its comparison.
+    /// The figures of an answer, or of a comparison.
     ///
     /// # Errors
-    /// As [`other`](Self::other).
+    /// Those of [`other`](Self::other).
     pub(super) fn figures<'a>(
         &self,
         shared: &Shared,
@@ -74,13 +74,13 @@ impl Question {
         })
     }
 
-    /// What is looked at.
+    /// The visible ranges.
     pub(super) fn windows(&self) -> Windows {
         Windows { time_s: self.window, others: self.windows.clone() }
     }
 }
 
-/// What is looked at of figures.
+/// The visible ranges of figures.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Windows {
     time_s: Option<[f64; 2]>,
@@ -88,7 +88,7 @@ pub(super) struct Windows {
 }
 
 impl Windows {
-    /// What is looked at of a figure, along its axis.
+    /// The visible range of a figure along its horizontal axis; for a map, of time.
     fn of(&self, figure: &Figure) -> Option<[f64; 2]> {
         match figure.x.seconds {
             Some(seconds) => self.time_s.map(|ends| ends.map(|end| end / seconds)),
@@ -98,7 +98,7 @@ impl Windows {
     }
 }
 
-/// A recording with its settings, and what came of them.
+/// A recording with its settings and the answer to them.
 pub(super) struct Asked {
     recording: Recording,
     pub(super) settings: Settings,
@@ -119,13 +119,13 @@ impl Asked {
         Ok(Self { recording, settings, answer })
     }
 
-    /// The command that gives the same again, with uploaded files named as they were on the user's disk.
+    /// The command that reproduces the answer, with uploaded files named as they were on the user's disk.
     pub(super) fn command(&self) -> String {
         let Some(folder) = self.recording.folder() else { return self.answer.command.clone() };
         let folder = format!("{}/", folder.display());
         let mut pieces = self.answer.command.split(&folder);
         let first = pieces.next().unwrap_or_default().to_owned();
-        // Each file lies in a folder that is called like its field.
+        // Each file lies in a folder named after its field.
         let names = pieces.map(|piece| piece.split_once('/').map_or(piece, |(_, name)| name));
         names.fold(first, |command, name| command + name)
     }
@@ -138,7 +138,7 @@ impl Asked {
     }
 }
 
-/// An answer as the page takes it, with its figures or those of a comparison, and its own tables.
+/// An answer in the form that the page reads, with its own figures or those of a comparison, and its own tables.
 pub(super) fn page(answer: &Answer, figures: &[Figure], windows: &Windows) -> Value {
     let drawn = figures.iter().map(|figure| {
         plotly::figure(figure, View { most_points: MOST_POINTS, window: windows.of(figure) })
@@ -156,7 +156,7 @@ pub(super) fn page(answer: &Answer, figures: &[Figure], windows: &Windows) -> Va
     })
 }
 
-/// Findings as the page takes them: whether it is a fault, what it is about, and the sentence.
+/// Findings in the form that the page reads: whether it is a fault, its subject, and the sentence.
 pub(super) fn findings(findings: &[Finding]) -> Vec<(bool, &'static str, String)> {
     findings.iter().map(|it| (it.is_fault(), it.about, it.sentence())).collect()
 }

@@ -1,4 +1,4 @@
-//! Recordings that are open, and files from which they can be opened again.
+//! Open recordings, and the files from which they can be opened again.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -11,38 +11,38 @@ use super::uploads::is_hash;
 use crate::Error;
 use crate::system::{AnySystem, Files, Opened, Settings, Source};
 
-/// As many as a person compares; a day of satellites is large.
+/// The maximum number of open recordings: as many as a person compares, as a day of satellites is large.
 const MOST_OPEN: usize = 8;
-/// Uploads whose files are kept.
+/// The maximum number of uploads whose files are kept.
 const MOST_KEPT: usize = 8;
 
-/// The last few recordings that were opened, and the last uploads.
+/// The most recently used recordings and uploads.
 #[derive(Default)]
 pub(super) struct Sessions {
     open: Mutex<VecDeque<(Name, Recording)>>,
     uploads: Mutex<VecDeque<(Name, Upload)>>,
 }
 
-/// A system, and what the address calls its recording: that of a synthetic one, or the hash of what was uploaded.
+/// A system and the identifier of its recording in the address: the name of a synthetic one, or the hash of an upload.
 pub(super) type Name = (&'static str, String);
 
-/// A recording that is open.
+/// An open recording.
 #[derive(Clone)]
 pub(super) struct Recording {
     pub(super) opened: Arc<dyn Opened>,
-    /// No business of the page's.
+    /// The folder of its files, which is not revealed to the page.
     folder: Option<Arc<TempDir>>,
-    /// Names of its files, for people; none of a synthetic one.
+    /// The names of its files, for people; `None` for a synthetic recording.
     pub(super) files: Option<String>,
 }
 
 impl Recording {
-    /// Where its files lie, if it has any.
+    /// The folder of its files, if it has any.
     pub(super) fn folder(&self) -> Option<&Path> {
         self.folder.as_deref().map(TempDir::path)
     }
 
-    /// An error about its files by the names that they have elsewhere.
+    /// Renames the files in an error to the names that they were uploaded with.
     pub(super) fn naming_files(&self, error: Error) -> Error {
         match self.folder() {
             Some(folder) => error.naming_files_below(folder),
@@ -51,7 +51,7 @@ impl Recording {
     }
 }
 
-/// Files that the page sent.
+/// Files uploaded by the page.
 #[derive(Clone)]
 pub(super) struct Upload {
     pub(super) files: Files,
@@ -69,7 +69,7 @@ impl Upload {
 }
 
 impl Sessions {
-    /// Keeps a recording, and closes the one that nobody asked for for the longest time if there are too many.
+    /// Keeps a recording, and closes the least recently used one if there are too many.
     pub(super) fn add(&self, name: Name, recording: Recording) {
         put(&mut lock(&self.open), name, recording, MOST_OPEN);
     }
@@ -79,10 +79,10 @@ impl Sessions {
         put(&mut lock(&self.uploads), name, upload, MOST_KEPT);
     }
 
-    /// The recording of that name, opened again if need be.
+    /// The recording of this name, opened again if necessary.
     ///
     /// # Errors
-    /// If there is none of that name, or no longer.
+    /// If there is no recording of this name, or no longer.
     pub(super) fn get(
         &self,
         system: &'static dyn AnySystem,
@@ -91,7 +91,7 @@ impl Sessions {
         let name = (system.name(), recording.to_owned());
         let upload = take(&mut lock(&self.uploads), &name);
         let open = take(&mut lock(&self.open), &name);
-        // Of the others none stays large.
+        // The other recordings drop their large answers.
         let others = lock(&self.open).clone();
         others
             .iter()
@@ -119,7 +119,7 @@ impl Sessions {
     }
 }
 
-/// Puts what is asked for latest to the end.
+/// Inserts a value as the most recently used one.
 fn put<T>(all: &mut VecDeque<(Name, T)>, name: Name, value: T, most: usize) {
     all.retain(|(known, _)| *known != name);
     all.push_back((name, value));
@@ -137,6 +137,6 @@ fn take<T: Clone>(all: &mut VecDeque<(Name, T)>, name: &Name) -> Option<T> {
 }
 
 fn lock<T>(all: &Mutex<T>) -> MutexGuard<'_, T> {
-    // Nothing is left half done in there.
+    // A panic in another thread cannot leave the contents inconsistent.
     all.lock().unwrap_or_else(PoisonError::into_inner)
 }

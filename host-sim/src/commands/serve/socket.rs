@@ -1,4 +1,4 @@
-//! A stream, as it comes.
+//! A `WebSocket` for a live stream.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,10 +15,10 @@ use super::question::{Windows, page};
 use super::{Moment, Shared, Show};
 use crate::system::Settings;
 
-/// Between two pictures at least: a person sees no more, and a page draws no faster.
+/// The minimum interval between two pictures: a person sees no more, and a page draws no faster.
 const BEAT: Duration = Duration::from_millis(200);
 
-/// Opens a socket that shows the stream.
+/// Opens a `WebSocket` that shows the stream.
 pub(super) async fn open(
     State(shared): State<Arc<Shared>>,
     socket: WebSocketUpgrade,
@@ -29,15 +29,15 @@ pub(super) async fn open(
     Ok(socket.on_upgrade(|socket| show(socket, live)))
 }
 
-/// What the page wants to see.
+/// A request of the page.
 #[derive(Debug, Default, Deserialize)]
 struct Wanted {
     settings: Map<String, Value>,
-    /// After how many bytes of the stream; none for now.
+    /// The number of bytes of the stream to show; `None` for the present.
     after: Option<u64>,
 }
 
-/// Waits until the page wants a picture, and sends it.
+/// Waits for requests of the page and answers each with a picture.
 async fn show(mut socket: WebSocket, live: Arc<dyn Show>) {
     let mut beat = interval(BEAT);
     beat.set_missed_tick_behavior(MissedTickBehavior::Delay);

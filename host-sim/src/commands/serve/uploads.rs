@@ -1,4 +1,4 @@
-//! Files that the page sends.
+//! Uploads from the page.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -12,37 +12,37 @@ use tokio::sync::{Semaphore, SemaphorePermit};
 
 use super::api::Refusal;
 
-/// A day of satellites is some tens of megabytes, an hour of walking at 1 kHz two hundred. A log takes four times its size of
-/// memory: none takes a gigabyte.
+/// The maximum size of an upload in bytes. A day of satellites is some tens of megabytes, an hour of walking at 1 kHz
+/// two hundred. A log takes four times its size of memory: none takes a gigabyte.
 pub(super) const LARGEST: usize = 192 << 20;
-/// Files are read in memory.
+/// The maximum number of uploads at once, as files are read in memory.
 const AT_ONCE: usize = 2;
 
-/// Where files lie while they are read.
+/// The folders of uploaded files.
 pub(super) struct Uploads {
-    /// All of them are below it, so that none stays when the program ends.
+    /// The parent of all folders, so that none remains when the program ends.
     folder: PathBuf,
     permits: Semaphore,
 }
 
 impl Uploads {
-    /// Into folders below this one.
+    /// Uploads into folders below this one.
     pub(super) fn to(folder: &Path) -> Self {
         Self { folder: folder.to_path_buf(), permits: Semaphore::new(AT_ONCE) }
     }
 
-    /// A folder that ends with the program at the latest.
+    /// A new folder, deleted with the program at the latest.
     ///
     /// # Errors
-    /// If it cannot be made.
+    /// If the folder cannot be created.
     pub(super) fn folder(&self) -> Result<TempDir, Refusal> {
         TempDir::new_in(&self.folder).map_err(Refusal::of)
     }
 
-    /// A turn to send files.
+    /// Reserves an upload and creates its folder.
     ///
     /// # Errors
-    /// If as many as may be are being sent already.
+    /// If the maximum number of uploads is already in progress.
     pub(super) fn begin(&self) -> Result<(SemaphorePermit<'_>, TempDir), Refusal> {
         let Ok(permit) = self.permits.try_acquire() else {
             let sentence = "two uploads are being read already: try again in a moment";
@@ -52,18 +52,18 @@ impl Uploads {
     }
 }
 
-/// What an upload is called: a hash of everything in it.
+/// The hash of an upload's contents, which is its name.
 #[derive(Default)]
 pub(super) struct Content(Sha256);
 
 impl Content {
-    /// Goes on with a field, a file's name or what somebody typed. Where it ends is part of it.
+    /// Adds a field, a file's name or a text entered by the user. Its length is included, so that its end matters.
     pub(super) fn say(&mut self, text: &str) {
         self.0.update((text.len() as u64).to_le_bytes());
         self.0.update(text);
     }
 
-    /// 128 of its bits.
+    /// The first 128 bits of the hash, in hexadecimal digits.
     pub(super) fn name(self) -> String {
         let mut hash = kestirim_sweep::hex(&self.0.finalize());
         hash.truncate(32);
@@ -76,14 +76,14 @@ pub(super) fn is_hash(name: &str) -> bool {
     name.len() == 32 && name.bytes().all(|byte| byte.is_ascii_hexdigit())
 }
 
-/// Writes a file as it comes, into a folder of its own `within` another; where it lies.
+/// Writes a file as it arrives into its own subfolder `within` of `folder`, and returns its path.
 pub(super) async fn write(
     folder: &Path,
     within: &str,
     mut part: Field<'_>,
     content: &mut Content,
 ) -> Result<PathBuf, Refusal> {
-    // The name alone: what a browser sends may hold a path, and it is told apart from others by its folder.
+    // Only the file name: a browser may send a path, and the subfolder keeps files apart.
     let name = Path::new(part.file_name().unwrap_or_default()).file_name();
     let name = name.map_or_else(|| within.into(), ToOwned::to_owned);
     let field = within;

@@ -9,28 +9,28 @@ use zip::result::ZipError;
 
 use crate::text::file_name;
 
-/// As much is unpacked, bytes.
+/// The maximum total size to unpack, in bytes.
 const LARGEST: u64 = 1 << 30;
-/// As many files are unpacked.
+/// The maximum number of files to unpack.
 const MOST: usize = 500;
 
-/// Whether a file begins as zip files do.
+/// Whether a file begins with the signature of zip files.
 pub(super) fn is_zip(path: &Path) -> bool {
     let mut start = [0; 4];
     let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
     read.is_ok() && start == *b"PK\x03\x04"
 }
 
-/// Unpacks all files, each into a folder of its own below `folder`; where they lie. Hidden files, and those that macOS adds,
-/// are left out.
+/// Unpacks all files, each into its own folder below `folder`, and returns their paths. Hidden files, and those that
+/// macOS adds, are left out.
 ///
 /// # Errors
-/// One sentence, if it is damaged or too large.
+/// One sentence, if the archive is damaged or too large.
 pub(super) fn unpack(path: &Path, folder: &Path) -> Result<Vec<PathBuf>, String> {
     let name = file_name(path);
     let damaged =
         |error: ZipError| format!("{name}: expected a whole zip file, found one with {error}");
-    // Its own folder is called after its number.
+    // The folder of the archive itself is named after its number.
     let own = path.parent().and_then(Path::file_name).unwrap_or_default().to_string_lossy();
     let file = File::open(path).map_err(|error| format!("{name}: {error}"))?;
     let mut archive = ZipArchive::new(file).map_err(damaged)?;

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::{cell, drawing, table};
 use crate::report::{Chapter, Recorded, Replayed, Studied};
 
-/// Beside the chapter, not in it: each recording has a time of its own.
+/// The section of a chapter's recordings: beside the chapter, not in it, as each recording has its own time axis.
 pub(super) fn section(chapter: &Chapter) -> Markup {
     let Some(Recorded { folder, left_out, studies }) = &chapter.recorded else { return html! {} };
     html! {
@@ -23,7 +23,7 @@ pub(super) fn section(chapter: &Chapter) -> Markup {
     }
 }
 
-/// Its place on the page.
+/// The anchor of the section on the page.
 pub(super) fn id(chapter: &Chapter) -> String {
     format!("{}-recorded", chapter.system)
 }

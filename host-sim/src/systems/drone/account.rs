@@ -1,4 +1,4 @@
-//! What came of a flight.
+//! The results of a flight.
 
 mod accuracy;
 
@@ -16,40 +16,40 @@ use crate::system::{Account, HealthState, Reason, Settings, System, Table};
 use crate::table::Found;
 use crate::text::printable;
 
-/// What a replay prints.
+/// The report that a replay prints.
 #[derive(Debug, Clone, Serialize)]
 struct Report {
     system: &'static str,
-    /// How many were used.
+    /// The number of measurements used.
     measurements: usize,
-    /// Where the user is.
+    /// The estimated position of the user.
     estimate: Place,
-    /// Root mean square distance from the estimate that the filter expects, m.
+    /// The root mean square distance from the estimate that the filter expects (m).
     sd_m: f64,
-    /// Where the level was not known, what the transmitter sends, dB (received level = this − path loss); over
-    /// open ground what is received at one metre.
+    /// If the level was not known, the level that the transmitter sends in dB (received level = this − path loss); over
+    /// open ground, the level received at one metre.
     level_db: Option<f64>,
-    /// Where one more measurement is expected to tell most.
+    /// The place where one more measurement is expected to be most informative.
     #[serde(skip_serializing_if = "Option::is_none")]
     next_waypoint: Option<NextWaypoint>,
-    /// Other transmitters of the same flight.
+    /// The other transmitters of the same flight.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     others: Vec<OtherUser>,
-    /// How the log was understood.
+    /// The conclusions about the format of the log.
     import: Vec<String>,
     warnings: Vec<String>,
-    /// How far that is from the truth, if it is known.
+    /// The error of the estimate, if the truth is known.
     accuracy: Option<Accuracy>,
 }
 
-/// A place, m.
+/// A position (m).
 #[derive(Debug, Clone, Copy, Serialize)]
 struct Place {
-    /// As x in the log.
+    /// The x coordinate, as in the log.
     x: f64,
-    /// As y in the log.
+    /// The y coordinate, as in the log.
     y: f64,
-    /// Degrees, if the log told places so.
+    /// The latitude in degrees, if the log gave positions by latitude and longitude.
     #[serde(skip_serializing_if = "Option::is_none")]
     latitude: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -63,24 +63,24 @@ impl Place {
     }
 }
 
-/// Where to measure next.
+/// The recommended place for the next measurement.
 #[derive(Debug, Clone, Copy, Serialize)]
 struct NextWaypoint {
     #[serde(flatten)]
     place: Place,
     height_m: f64,
-    /// The deviation that is expected after that, m.
+    /// The standard deviation expected after that measurement (m).
     sd_m: f64,
 }
 
-/// Another transmitter.
+/// Another transmitter and its position.
 #[derive(Debug, Clone, Serialize)]
 struct OtherUser {
     name: String,
-    /// None if no place explains what was heard, or too little was.
+    /// The estimated position; `None` if no position explains the measurements, or there are too few.
     estimate: Option<Place>,
     sd_m: Option<f64>,
-    /// If the truth is known.
+    /// The error (m), if the truth is known.
     error_m: Option<f64>,
 }
 
@@ -104,14 +104,14 @@ impl OtherUser {
     }
 }
 
-/// Name and words of where to measure next.
+/// The name and the text of the fact about where to measure next.
 pub(super) fn next_in_words(next: Next) -> (String, String) {
     let Next { place: [x, y], height, sd_m } = next;
     let words = format!("{x:.0} m, {y:.0} m, {height:.0} m high: ± {sd_m:.0} m expected then");
     ("measure next at".to_owned(), words)
 }
 
-/// What came of a flight up to the measurement that is shown.
+/// Evaluates a flight up to the measurement that is shown.
 pub(super) fn account(
     recording: &Recording,
     settings: &Settings,
@@ -186,7 +186,7 @@ pub(super) fn account(
     Ok(account)
 }
 
-/// What is known of a flight whose user and channel are.
+/// Adds facts about a synthetic flight, whose user and channel are known.
 fn synthetic_facts(account: &mut Account, settings: &Settings, track: &Track, shown: &Estimate) {
     let errors = track.estimates.iter().filter_map(|estimate| track.error_m(estimate));
     if let Some(error) = track.error_m(shown) {
@@ -211,13 +211,14 @@ fn synthetic_facts(account: &mut Account, settings: &Settings, track: &Track, sh
     }
 }
 
-/// What speaks against the flight up to `shown`.
+/// The doubts about the flight up to `shown`.
 fn doubts(settings: &Settings, track: &Track, shown: &Estimate) -> Vec<Doubt> {
     let channel = super::settings::channel(settings);
     Doubt::all(&track.stops, shown, channel.as_ref(), track.moved_m).collect()
 }
 
-/// Time, place and expected distance after each measurement. What speaks against the whole flight speaks against each.
+/// The table of time, position and expected distance after each measurement. Doubts about the whole flight apply to
+/// every row.
 pub(super) fn table(recording: &Recording, settings: &Settings, track: &Track) -> Table {
     let row = |estimate: &Estimate| {
         let [x, y] = estimate.place;

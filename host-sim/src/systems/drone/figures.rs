@@ -1,4 +1,4 @@
-//! What a flight looks like, measurement by measurement.
+//! Figures of a flight, measurement by measurement.
 
 mod cloud;
 mod knowledge;
@@ -14,7 +14,7 @@ use super::simulate::{moving_user, trajectory};
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::system::{Answer, Settings};
 
-/// The page's figures, and which measurement they show.
+/// Adds the page's figures, and the measurement that they show.
 pub(super) fn draw(recording: &Recording, settings: &Settings, track: &Track, answer: &mut Answer) {
     let now = track.now(settings.number("step"));
     answer.fact("step", format!("{} of {}", now + 1, track.estimates.len()));
@@ -22,7 +22,7 @@ pub(super) fn draw(recording: &Recording, settings: &Settings, track: &Track, an
     let (channel, plane_m) = match recording {
         Recording::Moving => (synthetic(), Some(moving_user::SIDE_M)),
         Recording::Staying => (synthetic(), Some(trajectory::SIDE_M)),
-        // A level says nothing of what is lost in between.
+        // A received level does not tell the path loss.
         Recording::Flight(recorded) if recorded.flight.quantity == Quantity::PathLoss => {
             (channel(settings), None)
         }
@@ -57,16 +57,16 @@ pub(super) fn draw(recording: &Recording, settings: &Settings, track: &Track, an
     ];
 }
 
-/// A track, and which of its estimates is looked at.
+/// A track, and the estimate of it that is shown.
 struct Drawing<'a> {
     recording: &'a Recording,
     track: &'a Track,
-    /// Counted from 0.
+    /// The index of the estimate shown, counted from 0.
     now: usize,
 }
 
 impl Drawing<'_> {
-    /// The plane in which the user is, as it is believed to be now.
+    /// The map of the user's plane, with the belief at the estimate shown.
     fn map(&self, plane_m: Option<f64>) -> Figure {
         let track = self.track;
         let begin = track.stops.first().map_or(0.0, |stop| stop.t);
@@ -87,7 +87,7 @@ impl Drawing<'_> {
             .showing(plane, plane);
         if let Recording::Flight(recorded) = self.recording {
             let border = recorded.area.iter().flat_map(|area| {
-                // Back to the first corner.
+                // The border closes at the first corner.
                 area.corners().iter().chain(area.corners().first()).copied()
             });
             let border = Series::path("area", border).marked(Mark::Dashes);
@@ -126,7 +126,7 @@ impl Drawing<'_> {
             .with_all(others)
     }
 
-    /// A value after each measurement, with its name.
+    /// A figure of a named value after each measurement.
     fn over_time(
         &self,
         id: &str,
@@ -147,7 +147,7 @@ impl Drawing<'_> {
     }
 }
 
-/// A single place with a word beside it.
+/// A single labelled position.
 fn marked(name: &str, place: [f64; 2], label: String, colour: Colour) -> Series {
     Series::points(name, [place]).labelled(vec![label]).coloured(colour)
 }

@@ -1,6 +1,6 @@
-//! A drone base station that finds and follows a user on the ground.
+//! A drone base station that locates and follows a user on the ground.
 //!
-//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiment tracks what [`simulate`] makes.
+//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiment tracks the flights that [`simulate`] generates.
 //!
 //! Frame: a plane in metres (such as east and north), heights above the user.
 
@@ -29,7 +29,7 @@ use crate::system::{
 use kestirim_replay::drone::{self, Track};
 use kestirim_sweep::{Block, Samples};
 
-/// The system.
+/// The drone system.
 #[derive(Debug, Clone, Copy)]
 pub struct Drone;
 

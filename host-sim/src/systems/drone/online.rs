@@ -1,4 +1,4 @@
-//! A user on the ground, heard by a drone that still flies.
+//! Locating a user on the ground from a live stream of a flying drone.
 
 use kestirim_replay::drone::{Area, Estimate, MOST, Misfit, Quantity, Search, Stop};
 use kestirim_telemetry::{Message, PathLoss};
@@ -12,7 +12,7 @@ use crate::figure::{Colour, Mark, Series};
 use crate::system::{Files, Online, Outcome, Plan, Settings};
 use crate::table::FARTHEST_POSITION;
 
-/// Where the user can be, and what is built there.
+/// The area of the user, and the settings including the environment.
 #[derive(Debug, Clone)]
 pub(super) struct Listening {
     area: Option<Box<Area>>,
@@ -23,7 +23,7 @@ impl Listening {
     /// Reads the files.
     ///
     /// # Errors
-    /// Whatever is wrong with the area.
+    /// Errors in the file of the area.
     pub(super) fn read(settings: &Settings, files: &Files) -> Result<Self, Error> {
         let area = files.one("area").map(|path| area::read(path, None)).transpose()?;
         Ok(Self { area, settings: settings.clone() })
@@ -46,18 +46,18 @@ impl Plan for Listening {
     }
 }
 
-/// Looks for the place as a replay does, from all that was heard, evenly thinned where it is much.
+/// Locates the user as a replay does, from all measurements so far, thinned out evenly if there are many.
 #[derive(Debug)]
 struct Listener {
     stops: Box<Thinned<Stop, MOST>>,
     plan: Listening,
-    /// Whether something was heard that is not yet in what was found.
+    /// Whether a measurement has arrived that the estimate does not include yet.
     is_new: bool,
     found: Option<Estimate>,
 }
 
 impl Listener {
-    /// Drops what does not count any more at a time, s.
+    /// Drops the measurements outside the time window at the time `now` (s).
     fn forget(&mut self, now: f64) {
         let Some(window_s) = self.plan.settings.number("window") else { return };
         let counts = |stop: &&Stop| stop.t >= now - window_s;
@@ -69,7 +69,7 @@ impl Listener {
         self.stops = stops;
     }
 
-    /// Where the user is; none if no place explains the path losses, and from fewer than three.
+    /// The estimate of the user's position; `None` if no position explains the path losses, or from fewer than three.
     fn locate(&self) -> Option<Estimate> {
         let stops = self.stops.as_slice();
         if stops.len() < 3 {

@@ -1,9 +1,9 @@
-//! The flight that the results are told of.
+//! The recorded flight whose results are reported.
 
 use crate::system::DataFile::There;
 use crate::system::{Measure, Over, Recorded, Study, Together};
 
-/// A rover on the ground, found from the air.
+/// The study of a rover on the ground, located from the air.
 pub(super) const STUDIES: &[Study] = &[Study {
     id: "afar",
     title: "A real flight over ten minutes, channel unknown",

@@ -1,4 +1,4 @@
-//! A flight as it was recorded, with the truth where that is known, or a synthetic one by name.
+//! Recorded flights, with the truth where it is known, and synthetic ones by name.
 
 pub mod area;
 pub mod flight;
@@ -16,40 +16,41 @@ use crate::Error;
 use crate::system::Files;
 use crate::table::Found;
 
-/// Of fewer measurements a place says nothing.
+/// The minimum number of measurements for an estimate of the position.
 pub const FEWEST_STOPS: usize = 3;
 
-/// A recording.
+/// A recording of a flight.
 #[derive(Debug, Clone)]
 pub enum Recording {
     /// A recorded flight.
     Flight(Box<Recorded>),
-    /// A synthetic user who walks a circle, followed by the drone.
+    /// A synthetic user who walks in a circle, followed by the drone.
     Moving,
-    /// A synthetic user who stays.
+    /// A synthetic user who is stationary.
     Staying,
 }
 
-/// A recorded flight.
+/// A recorded flight and its related files.
 #[derive(Debug, Clone)]
 pub struct Recorded {
-    /// Where it was read.
+    /// The path of the log.
     pub log: PathBuf,
-    /// What was measured: at least three times.
+    /// The measurements: at least three.
     pub flight: Flight,
-    /// Where the user can be.
+    /// The area in which the user can be.
     pub area: Option<Box<Area>>,
-    /// Where users really are.
+    /// The true positions of the users.
     pub truth: Truth,
     /// How the log was read.
     pub found: Found,
 }
 
 impl Recording {
-    /// Reads the files.
+    /// Reads the files of a recording.
     ///
     /// # Errors
-    /// The file, the line, and what was expected there; [`Error::File`] if there is too little.
+    /// An error that names the file, the line, and what was expected there; [`Error::File`] if there are too few
+    /// measurements.
     pub fn read(files: &Files) -> Result<Self, Error> {
         let log = files.required("log")?;
         let (flight, found) = flight::read(log, files.reading.tables()?)?;
@@ -65,7 +66,7 @@ impl Recording {
         Ok(Self::Flight(Box::new(recorded)))
     }
 
-    /// A synthetic one.
+    /// A synthetic recording by name.
     ///
     /// # Errors
     /// [`Error::Usage`] if there is none of that name.
@@ -79,7 +80,7 @@ impl Recording {
 }
 
 impl Recorded {
-    /// A complaint about the log.
+    /// An error about the log.
     pub(super) fn refused(&self, problem: &str) -> Error {
         Error::File { path: self.log.clone(), problem: problem.to_owned() }
     }

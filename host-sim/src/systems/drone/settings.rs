@@ -1,4 +1,4 @@
-//! How a user is looked for, and what synthetic users and flights are like: what can be set, and what it means.
+//! The settings of the search for a user, and of synthetic users and flights.
 
 pub mod cell;
 pub mod choices;
@@ -17,14 +17,14 @@ use super::simulate::trajectory::Trajectory;
 use crate::metrics::distance;
 use crate::system::{Idle, Kind, Named, Setting, Settings};
 
-/// Most steps of a synthetic walk.
+/// The maximum number of steps of a synthetic walk.
 const MOST_STEPS: f64 = 1000.0;
-/// Most measurements of a synthetic user who stays.
+/// The maximum number of measurements of a stationary synthetic user.
 const MOST_STOPS: f64 = 40.0;
-/// The environment over open ground.
+/// The name of the environment over open ground.
 const OPEN: &str = "open";
 
-/// What can be set.
+/// The available settings.
 pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
     let (most, shown) = match recording {
         None => (10_000.0, 1.0),
@@ -92,7 +92,7 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
     ]
 }
 
-/// What is built on the ground, or nothing.
+/// The setting of the environment, with or without open ground.
 fn environment(with_open: bool) -> Setting {
     let mut setting = Setting::one_of(
         "environment",
@@ -155,12 +155,12 @@ fn speed(range: [f64; 3]) -> Setting {
     Setting::number("speed", "Speed of the drone, which costs energy", "km/h", range, 40.0)
 }
 
-/// Why a setting has no effect as the recording and the others are.
+/// Why a setting has no effect given the recording and the other settings.
 pub(super) fn idle(recording: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
     let synthetic = [&Recording::Moving, &Recording::Staying];
     match recording {
         Some(recording) => idle_of(recording, settings, name),
-        // Some synthetic user or a recorded flight.
+        // The recording may be of some synthetic user or a recorded flight.
         None if ["environment", "frequency", "step", "window"].contains(&name) => None,
         None => synthetic
             .map(|recording| idle_of(recording, settings, name))
@@ -180,7 +180,8 @@ fn idle_of(recording: &Recording, settings: &Settings, name: &str) -> Option<Idl
     match (recording, name) {
         (_, "step") | (Recording::Flight(_), "environment" | "window") => None,
         (Recording::Flight(recorded), "frequency") => {
-            // Among buildings the transmitter's level is told, from which the first metre's loss is taken.
+            // In built-up environments the level reported is the transmitter's, which depends on the loss of the first
+            // metre.
             let is_level = recorded.flight.quantity == Quantity::Level && built(settings).is_none();
             is_level
                 .then(|| Idle::implied("levels of unknown offset tell the same at any frequency"))
@@ -215,22 +216,22 @@ fn idle_of(recording: &Recording, settings: &Settings, name: &str) -> Option<Idl
     }
 }
 
-/// What is built where a flight was recorded; none over open ground.
+/// The environment of a recorded flight; `None` over open ground.
 pub(super) fn built(settings: &Settings) -> Option<EnvironmentKind> {
     EnvironmentKind::from_str(&settings.choice("environment"), false).ok()
 }
 
-/// Of what the transmitter sends, m.
+/// The wavelength of the transmitter (m).
 pub(super) fn wavelength_m(settings: &Settings) -> f64 {
     drone::wavelength_m(1e6 * settings.decided("frequency"))
 }
 
-/// The channel of a recorded flight; none over open ground.
+/// The channel model of a recorded flight; `None` over open ground.
 pub(super) fn channel(settings: &Settings) -> Option<Channel<f64>> {
     built(settings)?.channel_at(wavelength_m(settings)).ok()
 }
 
-/// A synthetic user who moves, and how the drone follows.
+/// A synthetic moving user, and the policy by which the drone follows.
 pub(super) fn walk(settings: &Settings) -> Walk {
     let policy = match settings.chosen("flight") {
         FlightKind::Hover => Policy::Hover(settings.chosen::<ResamplerKind>("resampler").into()),
@@ -240,7 +241,7 @@ pub(super) fn walk(settings: &Settings) -> Walk {
     Walk { unknown_noise_db: settings.decided("noise"), ..walk_of(settings, policy) }
 }
 
-/// With the settings that an experiment has, too.
+/// A walk with the settings that an experiment has as well.
 fn walk_of(settings: &Settings, policy: Policy) -> Walk {
     let thesis = Walk::thesis(policy);
     let count = settings.number("particles").map(|count| count as usize);
@@ -254,7 +255,7 @@ fn walk_of(settings: &Settings, policy: Policy) -> Walk {
     }
 }
 
-/// Where and how a synthetic user who stays is measured.
+/// The geometry of the measurements of a stationary synthetic user.
 pub(super) fn geometry(settings: &Settings) -> Geometry {
     let stops = settings.decided("measurements") as u32;
     let trajectory = match settings.chosen("trajectory") {
@@ -270,7 +271,7 @@ pub(super) fn geometry(settings: &Settings) -> Geometry {
     Geometry { stops, per_stop: 1, height_m, trajectory, environment }
 }
 
-/// The filter of a user who stays.
+/// The filter for a stationary user.
 pub(super) fn filter_of(settings: &Settings) -> FilterSetting {
     let particles = settings.number("particles").map_or(500, |count| count as usize);
     match settings.chosen("filter") {
@@ -282,7 +283,8 @@ pub(super) fn filter_of(settings: &Settings) -> FilterSetting {
     }
 }
 
-/// What a channel expects of a user at a place, dB; none right at the drone.
+/// The path loss that a channel expects for a user at a position (dB); `None` unless the height of the stop is
+/// positive.
 pub(super) fn expected_loss_db(
     channel: &Channel<f64>,
     stop: &Stop,

@@ -176,7 +176,7 @@ fn a_log_is_searched_and_refused_as_on_the_command_line() {
     let mut text = "t,x,y,h,rssi_db\n".to_owned();
     for k in 0..12 {
         let t = f64::from(k);
-        // Wide enough to tell both sides apart, though nobody knows the channel.
+        // The geometry is wide enough to tell both sides apart, although the channel is not known.
         let (x, y) = (40.0 * t, 120.0 * (t * 0.9).sin());
         let far = (x - 200.0).hypot(y - 100.0).hypot(40.0);
         writeln!(text, "{t},{x:.3},{y:.3},40,{:.3}", -40.0 - 20.0 * far.log10()).unwrap();
@@ -202,7 +202,7 @@ fn a_log_is_searched_and_refused_as_on_the_command_line() {
     assert!(refusal.contains("at least three measurements"), "{refusal}");
 }
 
-/// Path losses of a user at 150 m, 120 m, among houses at 433 MHz.
+/// Path losses of a user at 150 m, 120 m in a suburban environment at 433 MHz.
 fn at_433_mhz() -> Vec<Stop> {
     let channel = EnvironmentKind::Suburban.channel_at::<f64>(wavelength_m(433e6)).unwrap();
     let stop = |k: u32| {
@@ -215,7 +215,7 @@ fn at_433_mhz() -> Vec<Stop> {
     (0..40).map(stop).collect()
 }
 
-/// With the frequency all is as at 2 GHz, even if all losses are 3 dB off; without it nothing fits.
+/// With the right frequency the results are as at 2 GHz, even if all losses are 3 dB off; without it nothing fits.
 #[test]
 fn path_losses_are_those_of_a_frequency() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Feeds a flight to the filters, recorded or synthetic.
+//! Runs the filters over a flight, recorded or synthetic.
 
 use kestirim_replay::drone::{
     Area, BEYOND_M, EnvironmentKind, MOST_DRAWN, Other, Search, Stop, Track, thinned,
@@ -12,11 +12,11 @@ use super::simulate::{moving_user, static_user};
 use crate::Error;
 use crate::system::{Detail, Settings};
 
-/// From here on a drone hears nothing, m.
+/// The distance beyond which a drone receives nothing (m).
 const FAR_M: f64 = 20_000.0;
-/// Estimates on the way that are held against the truth, and not drawn.
+/// The number of intermediate estimates that are compared with the truth but not drawn.
 const MOST_JUDGED: usize = 10;
-/// A drone that searches an area is not beside it for a larger share of its measurements.
+/// The largest plausible share of measurements outside the area, for a drone that searches it.
 const MOST_OUTSIDE: f64 = 0.25;
 
 /// Tracks a user.
@@ -46,7 +46,7 @@ fn find(recorded: &Recorded, settings: &Settings, detail: Detail) -> Result<Trac
     let name = flight.transmitter.as_deref();
     let truth = stops.iter().map(|stop| truth.of(name, stop.t)).collect::<Option<Vec<_>>>();
     let truth = truth.unwrap_or_default();
-    // What comes in between takes as long as the end, each time.
+    // Each intermediate estimate takes as long as the final one.
     let most = match detail {
         Detail::Every => MOST_DRAWN,
         Detail::Result if truth.is_empty() => 1,
@@ -60,7 +60,7 @@ fn find(recorded: &Recorded, settings: &Settings, detail: Detail) -> Result<Trac
     if estimates.is_empty() {
         return Err(recorded.refused("no place explains the measurements"));
     }
-    // Over open ground, and of a window, there is an estimate after one measurement in several.
+    // Over open ground, and with a window, there is only one estimate per several measurements.
     if environment.is_some() && window_s.is_none() && estimates.len() < stops.len() {
         warnings.push("some measurements are explained by no place: left out".to_owned());
     }
@@ -82,7 +82,7 @@ fn other(heard: &Heard, recorded: &Recorded, settings: &Settings) -> Other {
     Other { name: heard.name.clone(), estimate, truth }
 }
 
-/// As many measurements as can be remembered, and what a reader should know.
+/// The measurements, thinned to as many as can be stored, and warnings for the user.
 fn used(recorded: &Recorded, environment: Option<EnvironmentKind>) -> (Vec<Stop>, Vec<String>) {
     let Recorded { flight, area, .. } = recorded;
     let mut warnings = Vec::new();
@@ -118,7 +118,7 @@ fn used(recorded: &Recorded, environment: Option<EnvironmentKind>) -> (Vec<Stop>
     (stops, warnings)
 }
 
-/// Share of the stops that are beyond an area's corners.
+/// The share of the stops that lie outside an area's bounding box.
 fn outside(area: &Area, stops: &[Stop]) -> f64 {
     let (low, high) = (area.region().low(), area.region().high());
     let is_beyond = |at: f64, axis: usize| at < low[axis] || at > high[axis];

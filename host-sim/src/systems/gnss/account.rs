@@ -1,4 +1,4 @@
-//! What came of a recording.
+//! The results of a recording.
 
 pub mod comparison;
 pub mod report;
@@ -16,7 +16,7 @@ use super::track::Track;
 use crate::Error;
 use crate::system::{Account, System};
 
-/// Says why the solutions cannot be relied upon.
+/// Adds the reasons why the solutions cannot be relied upon.
 fn doubt(account: &mut Account, track: &Track) {
     let filters = track.filters.iter().map(|(_, followed)| followed);
     let contradicted = filters.chain(&track.smoothed).flat_map(Followed::contradictions);
@@ -27,13 +27,13 @@ fn doubt(account: &mut Account, track: &Track) {
     track.main().doubts().reasons().for_each(|reason| account.doubt(reason));
 }
 
-/// What came of one filter, or of all.
+/// The account of one filter, or of all.
 pub(super) fn account(
     recording: &Recording,
     setup: &Setup,
     track: &Track,
 ) -> Result<Account, Error> {
-    // What of the recording serves is the same for all filters.
+    // Warnings about the recording are the same for all filters.
     let mut warnings = warning::of_recording(recording, setup, track.main());
     warnings.extend(track.smoothed.iter().find_map(|it| warning::apart(it, setup.motion)));
     let of = |(filter, followed): &(FilterKind, Followed), first: &[String]| {
@@ -57,7 +57,7 @@ pub(super) fn account(
         }
         return Ok(account);
     }
-    // A filter without a position makes no track.
+    // A filter without a position has no report.
     let mut reports = track.filters.iter().filter_map(|filter| of(filter, &warnings));
     let Some(report) = reports.next() else { return Ok(Account::default()) };
     let mut account = Account::new(&report, report.warnings.clone())?;

@@ -1,4 +1,4 @@
-//! Figures of what filters made of a recording.
+//! Figures of the filters' results.
 
 pub mod arcs;
 pub mod dilution;
@@ -27,7 +27,8 @@ use super::track::Track;
 use crate::figure::{Colour, Figure, Series};
 use crate::system::Answer;
 
-/// The page's figures, all filters of a track in the first, the one that is shown closely in the others; and its tables.
+/// Adds the page's figures and tables: the first figure shows all filters of a track, the others the one that is shown
+/// in detail.
 pub(super) fn draw(recording: &Recording, setup: &Setup, track: &Track, answer: &mut Answer) {
     let truth = setup.truth(recording);
     let (main, about) = (track.main(), &track.about(truth.as_ref()));
@@ -56,7 +57,7 @@ pub(super) fn draw(recording: &Recording, setup: &Setup, track: &Track, answer: 
     }
 }
 
-/// Positions about a place that is called `origin`.
+/// Figures of positions relative to a point named `origin`.
 fn of_places(
     followed: &Followed,
     arcs: &Arcs<'_>,
@@ -74,7 +75,7 @@ fn of_places(
     ]
 }
 
-/// What became of satellites.
+/// Figures of the satellites.
 fn of_satellites(followed: &Followed, arcs: &Arcs<'_>, config: &Config) -> [Figure; 7] {
     let code = Shown { kind: |it| &it.code, noise: config.code, unit: ("m", 1.0) };
     let phase = Shown { kind: |it| &it.phase, noise: config.phase, unit: ("mm", 1e-3) };
@@ -99,7 +100,7 @@ fn of_satellites(followed: &Followed, arcs: &Arcs<'_>, config: &Config) -> [Figu
     ]
 }
 
-/// In which colour a filter is drawn.
+/// The colour of a filter.
 pub fn colour(filter: FilterKind) -> Colour {
     match filter {
         FilterKind::Default => Colour::Ours,
@@ -111,7 +112,7 @@ pub fn colour(filter: FilterKind) -> Colour {
     }
 }
 
-/// Three-dimensional errors of filters over the hours.
+/// The 3-D errors of filters over time, in hours.
 pub fn errors<'a>(
     figure: Figure,
     filters: impl IntoIterator<Item = (FilterKind, &'a Followed)>,
@@ -123,7 +124,7 @@ pub fn errors<'a>(
     figure.over_hours("3-D error, m").logarithmic().with_all(filters.into_iter().map(line))
 }
 
-/// The distance from a place over the hours, m.
+/// The distance from a point over time, in hours (m).
 fn error(name: impl Into<String>, followed: &Followed, place: &Vector3<f64>) -> Series {
     let errors = followed.fixes.iter().map(|fix| (fix.position - place).norm());
     Series::line(name, hours(followed), errors.collect())

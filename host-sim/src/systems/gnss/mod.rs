@@ -1,8 +1,8 @@
-//! GNSS receivers at a fixed or moving place.
+//! GNSS receivers, stationary or moving.
 //!
-//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiment tracks what [`simulate`] makes.
+//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiment tracks the days that [`simulate`] generates.
 //!
-//! Times are seconds since the midnight before the first epoch, positions those of the marker, ECEF.
+//! Times are in seconds since the midnight before the first epoch; positions are those of the marker, in ECEF.
 
 pub mod account;
 pub mod figures;
@@ -33,7 +33,7 @@ use crate::system::{
     Setting, Settings, Study, System, Table,
 };
 
-/// The system.
+/// The GNSS system.
 #[derive(Debug, Clone, Copy)]
 pub struct Gnss;
 

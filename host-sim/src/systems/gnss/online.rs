@@ -1,4 +1,4 @@
-//! A receiver that is switched on: its own stream, UBX or RTCM 3, followed while it comes.
+//! Follows the live stream of a receiver, in UBX or RTCM 3.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,17 +14,17 @@ use super::settings::{Choice, Setup};
 use crate::Error;
 use crate::system::{Files, Online, Outcome, Plan, Settings};
 
-/// What a stream is called where files have a name.
+/// The name of the stream where files have theirs.
 const STREAM: &str = "stream";
 
-/// What is said of a position after which epochs have no solution.
+/// The health shown for a position that is not from the latest epoch.
 const STALE: &str = "no solution since then";
-/// On a line that never pauses, what has come is looked at so often, …
+/// The minimum interval between two evaluations on a line that never pauses.
 const EVERY: Duration = Duration::from_secs(1);
-/// … and so many times more seldom than a look takes.
+/// The minimum interval between two evaluations, in multiples of the duration of an evaluation.
 const SELDOM: u32 = 4;
 
-/// How positions are made, and of which products.
+/// The settings and products from which positions are computed.
 #[derive(Debug, Clone)]
 pub(super) struct Receiving {
     setup: Setup,
@@ -33,10 +33,10 @@ pub(super) struct Receiving {
 }
 
 impl Receiving {
-    /// With the products of files.
+    /// A plan with the products in files.
     ///
     /// # Errors
-    /// Whatever is wrong with them.
+    /// Errors in the settings and files.
     pub(super) fn new(settings: &Settings, files: &Files) -> Result<Self, Error> {
         let setup = Setup::of(settings);
         if setup.filter == Choice::All {
@@ -79,16 +79,16 @@ impl Plan for Receiving {
     }
 }
 
-/// Follows a receiver.
+/// The estimator that follows a receiver.
 #[derive(Debug)]
 struct Receiver {
     live: Live,
     plan: Receiving,
-    /// The first position, ECEF, m: the map's middle.
+    /// The first position (ECEF, m), which is the map's origin.
     origin: Option<Vector3<f64>>,
-    /// When what had come was looked at last, …
+    /// The time of the last evaluation.
     looked: Instant,
-    /// … and how long that took.
+    /// The duration of the last evaluation.
     took: Duration,
 }
 
@@ -102,13 +102,13 @@ impl Receiver {
 }
 
 impl Online for Receiver {
-    /// Telemetry has no observations of satellites.
+    /// Ignores telemetry, which has no observations of satellites.
     fn take(&mut self, _message: &Message) -> Outcome {
         Outcome::NotMine
     }
 
     fn hear(&mut self, bytes: &[u8]) {
-        // Looks leave most of the time to others.
+        // Evaluations leave most of the time to other work.
         let is_due = self.looked.elapsed() >= EVERY.max(self.took * SELDOM);
         if self.live.hear(bytes) || is_due {
             self.look(false);

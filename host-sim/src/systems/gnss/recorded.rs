@@ -1,9 +1,9 @@
-//! The days that the results are told of.
+//! The recorded days whose results are reported.
 
 use crate::system::DataFile::{self, There};
 use crate::system::{Measure, Over, Recorded, Study, Together};
 
-/// Of the station ESBC, ECEF, m, and the last epoch that orbits reach.
+/// The position of the station ESBC (ECEF, m), and the last epoch that the orbits cover.
 const TRUTH: (&str, &str) = ("truth", "3582104.7657,532590.1785,5232755.1390");
 const UNTIL: (&str, &str) = ("until", "85500");
 const MOVING: (&str, &str) = ("mode", "kinematic");
@@ -42,7 +42,7 @@ const RATIO: Measure =
 const NOTE: &str = "Observations of EPN and IGS, orbits and clocks of CNES/CLS. Published: RTKLIB demo5 on the same files; limit: what was asked for.";
 const FIGURES: &[&str] = &["plan", "components"];
 
-/// A day at rest and as if in motion, without faults and with them.
+/// The studies of a stationary day, also treated as kinematic, without faults and with them.
 pub(super) const STUDIES: &[Study] = &[
     Study {
         id: "static",

@@ -1,4 +1,4 @@
-//! What a receiver recorded: from files or synthetic.
+//! Recordings of a receiver, from files or synthetic.
 
 pub mod truth;
 
@@ -13,19 +13,19 @@ use crate::Error;
 use crate::system::Files;
 use crate::text;
 
-/// How much of a synthetic day is a recording, s.
+/// The part of a synthetic day that makes a recording (s).
 const SYNTHETIC_S: f64 = 8.0 * 3600.0;
 
 /// Reads the files.
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read(files: &Files) -> Result<Recording, Error> {
     let obs = files.required("obs")?;
     if !files.all("sp3").is_empty() {
         files.required("antex")?;
     } else if files.all("nav").is_empty() && !is_stream(obs) {
-        // If the file is missing, that is said first.
+        // A missing file is reported first.
         let path = obs.to_path_buf();
         text::regular(obs).map_err(|source| Error::Read { path, source })?;
         let sentence =
@@ -58,7 +58,7 @@ pub fn read(files: &Files) -> Result<Recording, Error> {
     Ok(recording)
 }
 
-/// Whether a file is a recorded stream, which may hold what satellites broadcast.
+/// Whether a file is a recorded stream, which may contain broadcast ephemerides.
 pub fn is_stream(path: &Path) -> bool {
     matches!(Kind::of_file(path), Ok(Some(Kind::Ubx | Kind::Rtcm)))
 }
@@ -78,20 +78,20 @@ pub fn synthetic(name: &str) -> Result<Recording, Error> {
     Ok(of_day(day))
 }
 
-/// A synthetic day.
+/// The recording of a synthetic day.
 pub fn of_day(day: Day) -> Recording {
     let mut recording = Recording::simulated(day.epochs, day.products, MIDNIGHT, UTC_MINUS_GPS);
     recording.truth = Some(day.marker);
     recording
 }
 
-/// An error of a reader, in the same words.
+/// Converts an error of a reader, in the same words.
 pub(super) fn error(error: files::Error) -> Error {
     match error {
         files::Error::Read { path, source } => Error::Read { path, source },
         files::Error::File { path, problem } => Error::File { path, problem },
         files::Error::Line { path, line, problem } => Error::Line { path, line, problem },
-        // The readers may come to have other errors, each of them a whole sentence.
+        // Other errors that the readers may add are complete sentences.
         other => Error::Usage(other.to_string()),
     }
 }

@@ -1,4 +1,4 @@
-//! How observations become positions: what can be set, and what it means.
+//! The settings of the estimation of positions from observations.
 
 mod filter;
 mod firmware;
@@ -15,20 +15,20 @@ use self::part::Part;
 use super::recording::truth::place;
 use crate::system::{Idle, ScalarKind, Setting, Settings};
 
-/// Number types the filter is built for: ranges of 26 000 km to a millimetre need the digits.
+/// The number types that the filter supports: resolving ranges of 26 000 km to a millimetre requires the digits.
 pub const SCALARS: [ScalarKind; 1] = [ScalarKind::F64];
 
-/// Variance per second of each coordinate of a receiver that may move at will, m²/s: in the 30 s between
-/// epochs it gets 55 m away, so that only what is observed in an epoch tells where it is.
+/// The variance rate of each coordinate of a freely moving receiver (m²/s): in the 30 s between epochs the standard
+/// deviation grows to 55 m, so that only the observations of an epoch determine the position.
 pub const PROCESS_NOISE: f64 = 100.0;
 
-/// The highest mask, degrees: above it there are hardly ever four satellites.
+/// The highest elevation mask (degrees): above it there are hardly ever four satellites.
 const HIGHEST_MASK: f64 = 60.0;
 
-/// The largest gradient, m: ten times that of a front.
+/// The largest gradient (m): ten times that of a weather front.
 const STEEPEST: f64 = 0.02;
 
-/// What can be set.
+/// The available settings.
 pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
     let [first, last] = recording.map_or([0.0, 1e9], Recording::span);
     let step = ((last - first) / 200.0).max(1.0);
@@ -117,7 +117,7 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
     ]
 }
 
-/// Why a setting has no effect as the others are.
+/// Why a setting has no effect given the others.
 pub(super) fn idle(settings: &Settings, name: &str) -> Option<Idle> {
     let any = |is: fn(FilterKind) -> bool| {
         settings.chosen::<Choice>("filter").filters().iter().any(|filter| is(*filter))
@@ -143,39 +143,39 @@ pub(super) fn idle(settings: &Settings, name: &str) -> Option<Idle> {
     }
 }
 
-/// Everything that can be chosen about how observations become positions.
+/// The complete settings of the estimation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setup {
     /// One filter, or all.
     pub filter: Choice,
-    /// Whether the receiver moves, and how.
+    /// Whether and how the receiver moves.
     pub motion: Motion,
-    /// Satellites of which systems serve.
+    /// The satellite systems used.
     pub systems: Systems,
-    /// From what positions are made.
+    /// The method by which positions are computed.
     pub method: Method,
-    /// Whether ambiguities become whole numbers.
+    /// Whether ambiguities are fixed to integers.
     pub ambiguities: Ambiguities,
-    /// Lowest elevation of a satellite, rad; none: the filter's own choice.
+    /// The elevation mask (rad); `None` for the filter's own.
     pub mask: Option<f64>,
-    /// Standard deviation of the troposphere's gradients, m; none: the filter's own choice.
+    /// The standard deviation of the troposphere's gradients (m); `None` for the filter's own.
     pub gradient: Option<f64>,
     /// Whether the paper's filters are taken as published.
     pub published: bool,
-    /// Thresholds k0 and k1 of filters with IGG III weights; none: the filter's own.
+    /// The thresholds k0 and k1 of filters with IGG III weights; `None` for the filter's own.
     pub thresholds: [Option<f64>; 2],
-    /// What is corrected.
+    /// The corrections that are applied.
     pub corrections: Corrections,
-    /// Whether the recording is gone through backwards, too.
+    /// Whether the recording is also processed backwards.
     pub is_smoothed: bool,
-    /// The last epoch, s since the midnight before the first one; none: all are taken.
+    /// The time of the last epoch, in seconds since the midnight before the first one; `None` for all epochs.
     pub until: Option<f64>,
-    /// Where the marker really is, ECEF, m; none: what the recording knows.
+    /// The true position of the marker (ECEF, m); `None` for that of the recording.
     pub truth: Option<Vector3<f64>>,
 }
 
 impl Setup {
-    /// The defaults with one filter.
+    /// The default settings for one filter.
     pub fn new(filter: FilterKind, motion: Motion) -> Self {
         Self {
             filter: Choice::One(filter),
@@ -194,7 +194,7 @@ impl Setup {
         }
     }
 
-    /// As set.
+    /// The settings as given by the user.
     pub fn of(settings: &Settings) -> Self {
         let motion = match settings.chosen("mode") {
             Mode::Static => Motion::Static,
@@ -222,7 +222,7 @@ impl Setup {
         }
     }
 
-    /// The settings of a filter.
+    /// The configuration of a filter.
     pub fn config(&self, filter: FilterKind) -> Config {
         let mut config = filter.config(self.motion, self.published);
         if let Weight::Igg3(Igg3 { k0, k1, .. }) = &mut config.estimator.robust.weight {
@@ -234,12 +234,12 @@ impl Setup {
         Config { elevation_mask, gradient: self.gradient.unwrap_or(config.gradient), ..config }
     }
 
-    /// Where the marker really is: as set, or else as the recording knows, ECEF, m.
+    /// The true position of the marker (ECEF, m): the given one, or else that of the recording.
     pub fn truth(&self, recording: &Recording) -> Option<Vector3<f64>> {
         self.truth.or(recording.truth)
     }
 
-    /// The filter of which most is told: the chosen one, or the last of all.
+    /// The filter that is shown in detail: the chosen one, or the default if all are.
     pub fn main(&self) -> FilterKind {
         match self.filter {
             Choice::One(filter) => filter,

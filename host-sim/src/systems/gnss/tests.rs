@@ -41,7 +41,7 @@ fn synthetic_recordings_answer_with_the_same_figures() {
         ];
         assert_eq!(ids, expected, "{name}");
         assert!(answer.facts.iter().any(|(name, _)| name == "final error"), "{:?}", answer.facts);
-        // Of the faults a tenth of an epoch's observations may be.
+        // With faults, a tenth of an epoch's observations may be rejected.
         let is_of_faults = |warning: &String| *name == "faults" && warning.contains("rejected");
         assert!(answer.warnings.iter().all(is_of_faults), "{:?}", answer.warnings);
     }
@@ -77,7 +77,7 @@ fn every_control_changes_what_it_should() {
         let [before, changed] = [&before, &changed].map(|answer| &figure(answer, id).series);
         assert!(before != changed, "{after} {id}");
     }
-    // Nothing that was sent before lingers.
+    // Earlier requests leave no trace.
     let again = answered(&*opened, &json!({}));
     assert_eq!(
         (&again.facts, figure(&again, "error")),
@@ -133,7 +133,7 @@ fn the_first_epoch_alone_can_be_looked_at() {
     assert_eq!(figure(&answer, "error").series[0].x.len(), 1);
 }
 
-/// What a table's column holds, by name.
+/// The column of a table, by name.
 fn column(answer: &Answer, name: &str) -> Vec<f64> {
     let sheet = &answer.tables[0];
     let place = sheet.header.iter().position(|it| it == name).unwrap();
@@ -156,7 +156,7 @@ fn satellites_are_where_they_were_seen() {
     let names = sky.series.iter().find(|it| it.name == "names").unwrap();
     for track in tracks {
         assert!(far(track).iter().all(|it| *it <= 82.0 + 1e-9), "{}", track.name);
-        // Each time has a place, and no satellite turns by more than a degree in a minute.
+        // Each time has a position, and no satellite moves by more than a degree in a minute.
         let times = track.times.as_ref().unwrap();
         assert!(times.len() == track.x.len() && times.is_sorted());
         for place in 1..times.len() {
@@ -186,7 +186,7 @@ fn dilution_follows_the_number_of_satellites() {
         ["satellites used", "GDOP", "PDOP", "HDOP", "VDOP"].map(middle)
     };
     let [used, geometric, position, horizontal, vertical] = of(8.0);
-    // As GPS has it for an open sky.
+    // Typical values of GPS under an open sky.
     assert!((7.0..13.0).contains(&used) && (1.2..3.5).contains(&position), "{used} {position}");
     assert!(geometric > position && position > vertical && vertical > horizontal);
     let [fewer, greater, ..] = of(25.0);
@@ -209,7 +209,7 @@ fn the_table_of_satellites_counts_what_the_facts_count() {
     assert!(answer.tables[0].rows.iter().take(4).any(|row| row[0] == most), "{most}");
     let sums: Vec<_> = shares.iter().zip(&phases).map(|(a, b)| a + b).collect();
     assert!(sums.windows(2).all(|pair| pair[0] >= pair[1] - 0.11), "{sums:?}");
-    // Noise of the synthetic sky: decimetres to a metre or two, and millimetres to some centimetres.
+    // The noise of the synthetic sky: decimetres to a metre or two, and millimetres to some centimetres.
     assert!(column(&answer, "RMS of codes, m").iter().all(|it| (0.1..3.0).contains(it)));
     assert!(column(&answer, "RMS of phases, mm").iter().all(|it| (1.0..60.0).contains(it)));
 }

@@ -1,4 +1,4 @@
-//! Feeds filters with a recording: one, or all for comparison.
+//! Runs filters over a recording: one, or all for comparison.
 
 use kestirim_replay::gnss::{Epoch, FilterKind, Followed, Order, Pass, Recording, follow};
 use nalgebra::Vector3;
@@ -8,20 +8,19 @@ use super::settings::Setup;
 use crate::system::Detail;
 use crate::{Error, output};
 
-/// What filters made of a recording; at least one of them found a position.
+/// The results of the filters on a recording; at least one of them found a position.
 #[derive(Debug, Clone)]
 pub struct Track {
-    /// Each filter that was asked for, in the order of tables.
+    /// The results of each requested filter, in the order of tables.
     pub filters: Vec<(FilterKind, Followed)>,
-    /// Which of them is shown closely.
+    /// The index of the filter that is shown in detail.
     main: usize,
-    /// What that one found, put together with what it finds from the end, if that was asked for.
+    /// The results of that filter smoothed with those of a backward run, if requested.
     pub smoothed: Option<Followed>,
 }
 
 impl Track {
-    /// Runs one filter or all; what became of each observation is kept of [`Setup::main`], if every detail is
-    /// wanted.
+    /// Runs one filter or all. The outcome of each observation is kept for [`Setup::main`] if every detail is wanted.
     ///
     /// # Errors
     /// [`Error::File`] if no epoch has a solution, [`Error::Usage`] if there is no epoch.
@@ -56,17 +55,17 @@ impl Track {
         Ok(Self { filters, main, smoothed })
     }
 
-    /// The filter that is shown closely.
+    /// The filter that is shown in detail.
     pub fn main(&self) -> &Followed {
         &self.filters[self.main].1
     }
 
-    /// What is written as its track: smoothed, if that was asked for.
+    /// The results that are written as the track: the smoothed ones, if requested.
     pub fn best(&self) -> &Followed {
         self.smoothed.as_ref().unwrap_or_else(|| self.main())
     }
 
-    /// The place about which positions are shown, ECEF, m: the truth, or else the last position.
+    /// The point relative to which positions are shown (ECEF, m): the truth, or else the last position.
     pub fn about(&self, truth: Option<&Vector3<f64>>) -> Vector3<f64> {
         let filters = self.filters.iter().map(|(_, followed)| followed);
         let last = std::iter::once(self.main()).chain(filters).find_map(|it| it.fixes.last());
@@ -74,7 +73,7 @@ impl Track {
     }
 }
 
-/// The complaint that there is no position at all.
+/// The error that there is no position at all.
 fn unsolved(recording: &Recording, epochs: &[Epoch], filters: &[(FilterKind, Followed)]) -> Error {
     let [from, to] = recording.orbits_span;
     let ends = [epochs.first(), epochs.last()];

@@ -1,4 +1,4 @@
-//! What came of a walk.
+//! The results of a walk.
 
 pub mod accuracy;
 
@@ -11,7 +11,7 @@ use super::recording::Recording;
 use crate::Error;
 use crate::system::{Account, System, Table};
 
-/// What a replay prints.
+/// The report that a replay prints.
 #[derive(Debug, Clone, Serialize)]
 struct Report {
     system: &'static str,
@@ -44,7 +44,7 @@ struct StrideReport {
     sz: f64,
 }
 
-/// What came of a walk.
+/// Evaluates a walk.
 pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Error> {
     let log = &recording.log;
     let strides = walk.strides.iter().map(|stride| {
@@ -62,7 +62,7 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
         path_length_m: walk.path_length_m,
         closure_m: walk.closure_m,
         heading_rate_deg_per_min: walk.heading_rate.map(degrees_per_minute),
-        // Closing changes the rate once more.
+        // Closing the path changes the heading rate once more.
         heading_rate_sigma_deg_per_min: (walk.right_angles.map(|angles| angles.rate_sigma))
             .or(walk.both_feet.map(|feet| feet.rate_sigma))
             .filter(|_| walk.gap_m.is_none())
@@ -112,12 +112,12 @@ pub(super) fn account(recording: &Recording, walk: &Walk) -> Result<Account, Err
     Ok(account)
 }
 
-/// From rad/s.
+/// Converts rad/s to °/min.
 fn degrees_per_minute(rate: f64) -> f64 {
     60.0 * rate.to_degrees()
 }
 
-/// Time, position and its standard deviations of every sample.
+/// The table of time, position and its standard deviations at every sample.
 pub(super) fn table(walk: &Walk) -> Table {
     let row = |(point, sigma_m): (&TrackPoint, [f64; 3])| {
         let time = format!("{}.{:06}", point.time_us / 1_000_000, point.time_us % 1_000_000);

@@ -1,4 +1,5 @@
-//! `host-sim calibrate pedestrian`: what the IMU measures wrong, from a log in which it is held in several positions.
+//! `host-sim calibrate pedestrian`: determines the errors of the IMU from a log in which it is held in several
+//! positions.
 
 mod found;
 mod watched;
@@ -20,7 +21,7 @@ use super::recording::log;
 use crate::system::{Calibration, Finding, Plan, Reading, System};
 use crate::{Error, output};
 
-/// The command.
+/// The command for the calibration.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Calibrate;
 
@@ -69,7 +70,7 @@ impl Calibration for Calibrate {
     }
 }
 
-/// Why there is no calibration, and what to do.
+/// Explains why there is no calibration, and what to do.
 fn sentence(Refusal { error, poses, missing }: &Refusal) -> String {
     let next = in_words(missing);
     let expected = format!("positions held still for {SHORTEST_S:.0} s or more");
@@ -91,7 +92,7 @@ fn sentence(Refusal { error, poses, missing }: &Refusal) -> String {
     }
 }
 
-/// What to do about the sides that were not shown.
+/// Instructions for the sides that were not shown.
 fn in_words(missing: &[Side]) -> Option<String> {
     let side = |(place, side): (usize, &Side)| {
         let axis = ["x", "y", "z"].get(usize::from(side.axis)).unwrap_or(&"z");
@@ -115,7 +116,7 @@ fn turns() -> String {
     "for the gyroscope's scales and misalignments, turn the sensor from position to position about each of its axes".to_owned()
 }
 
-/// What the command prints.
+/// The report that the command prints.
 #[derive(Debug, Clone, Serialize)]
 struct Report {
     system: &'static str,

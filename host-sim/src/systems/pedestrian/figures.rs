@@ -1,4 +1,4 @@
-//! What a walk looks like: the diagrams of the paper.
+//! Figures of a walk: the diagrams of the paper.
 
 mod attitude;
 mod events;
@@ -23,13 +23,13 @@ use crate::metrics::STANDARD_GRAVITY;
 use crate::system::Answer;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
-/// Of the axes, wherever a colour means nothing else.
+/// The colours of the axes, wherever colour has no other meaning.
 const COLOURS: [Colour; 3] = [Colour::Other(0), Colour::Other(1), Colour::Other(2)];
 
-/// What makes a trace.
+/// A function that tracks a log.
 type Tracker = fn(&[Sample], &Options) -> Result<Trace, pedestrian::Error>;
 
-/// The page's figures, and facts of what they compare with: the published method, and no updates at all.
+/// Adds the page's figures, and facts about what they compare with: the published method, and no updates at all.
 pub(super) fn draw(
     recording: &Recording,
     options: &Options,
@@ -46,7 +46,7 @@ pub(super) fn draw(
     let (published_trace, drifting) = (published_trace?, drifting?);
     let truth = recording.truth();
     let (with, by_paper) = (Placed::new(ours, &truth), Placed::new(&published_trace, &truth));
-    // Without updates the track leaves the plan, and no turn would fit: it lies as ours does.
+    // Without updates the track leaves the plan and no alignment would fit, so it is placed like ours.
     let without = Placed { trace: &drifting, placement: with.placement };
     let others = vec![
         by_paper.path("the published method").coloured(Colour::Published),
@@ -80,35 +80,35 @@ pub(super) fn draw(
     Ok(())
 }
 
-/// A walk on the plan.
+/// A walk placed on the plan.
 #[derive(Debug, Clone, Copy)]
 pub struct Placed<'a> {
     /// The walk.
     pub trace: &'a Trace,
-    /// Where it lies.
+    /// The alignment of the walk with the plan.
     pub placement: Placement,
 }
 
 impl<'a> Placed<'a> {
-    /// A walk laid onto the truth, or as it is if that is unknown.
+    /// Aligns a walk with the truth, or leaves it as it is if that is unknown.
     pub fn new(trace: &'a Trace, truth: &[TrackPoint]) -> Self {
         Self { trace, placement: Placement::of(&trace.walk.track, truth) }
     }
 
-    /// A place of the track above the plan.
+    /// A position of the track in the frame of the plan, with its height.
     fn in_room(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let [x, y] = self.placement.onto_plan([x, y]);
         [x, y, z]
     }
 
-    /// The way of the foot.
+    /// The path of the foot.
     pub fn path(&self, name: &str) -> Series {
         let track = self.trace.walk.track.iter();
         let path = track.map(|point| self.placement.onto_plan(point.horizontal()));
         Series::path(name, path).timed(self.times())
     }
 
-    /// Where the foot stood after each stride.
+    /// The positions of the foot after each stride.
     pub fn strides(&self, name: &str) -> Series {
         let strides = &self.trace.walk.strides;
         let places = strides.iter().map(|stride| {
@@ -118,7 +118,7 @@ impl<'a> Placed<'a> {
         Series::points(name, places).timed(strides.iter().map(|stride| seconds(stride.time_us)))
     }
 
-    /// The velocity along an axis of the plan, counted from 0, over time.
+    /// The velocity along an axis of the plan over time; axes are counted from 0.
     pub fn velocity(&self, name: impl Into<String>, axis: usize) -> Series {
         let velocity = |moment: &Moment| {
             let [x, y, z] = moment.velocity;
@@ -137,7 +137,7 @@ impl<'a> Placed<'a> {
         Series::line(name, self.times(), self.trace.walk.track.iter().map(position).collect())
     }
 
-    /// 1 while the foot stands, 0 while it moves: the logic of the paper.
+    /// The stance over time: 1 while the foot is stationary, 0 while it moves, as in the paper.
     pub fn stance(&self, name: &str) -> Series {
         let stances = self.trace.moments.iter().map(|moment| f64::from(u8::from(moment.stance)));
         Series::new(name, Mark::Steps, self.times(), stances.collect())
@@ -148,7 +148,7 @@ impl<'a> Placed<'a> {
     }
 }
 
-/// The accelerometer over time.
+/// The specific force over time.
 pub fn accelerometer(id: &str, samples: &[Sample]) -> Figure {
     Figure::new(id, "Accelerometer")
         .over_seconds("specific force, g")
@@ -158,7 +158,7 @@ pub fn accelerometer(id: &str, samples: &[Sample]) -> Figure {
         .with_all(triad(samples, |sample| sample.specific_force.map(|f| f / STANDARD_GRAVITY)))
 }
 
-/// The gyroscope over time.
+/// The angular rate over time.
 pub fn gyroscope(id: &str, samples: &[Sample]) -> Figure {
     Figure::new(id, "Gyroscope")
         .over_seconds("angular rate, °/s")
@@ -166,7 +166,7 @@ pub fn gyroscope(id: &str, samples: &[Sample]) -> Figure {
         .with_all(triad(samples, |sample| sample.angular_rate.map(f64::to_degrees)))
 }
 
-/// Eq. 2 over time.
+/// The magnitude of the specific force over time (eq. 2).
 pub fn magnitude(id: &str, samples: &[Sample]) -> Figure {
     let magnitude = |sample: &Sample| {
         let [x, y, z] = sample.specific_force;
@@ -179,7 +179,7 @@ pub fn magnitude(id: &str, samples: &[Sample]) -> Figure {
         .with(Series::line("|a|", times(samples), magnitudes).coloured(Colour::Other(5)))
 }
 
-/// The paper's threshold: two lines about 1 g, as long as the log.
+/// The paper's threshold: two lines about 1 g over the duration of the log.
 pub fn threshold(samples: &[Sample], threshold_g: f64) -> Series {
     let ends = [samples.first(), samples.last()];
     let [from, to] = ends.map(|sample| sample.map_or(f64::NAN, |sample| seconds(sample.time_us)));
@@ -213,7 +213,7 @@ pub fn velocity(id: &str, with: &Placed<'_>, without: &Placed<'_>) -> Figure {
         .with_all((0..3).flat_map(axis))
 }
 
-/// Position over time, with the truth as far as it is known.
+/// The position over time, with the truth as far as it is known.
 pub fn position(id: &str, placed: &Placed<'_>, truth: &[TrackPoint]) -> Figure {
     let ours = (0..3).map(|i| placed.position(AXES[i], i).coloured(COLOURS[i]));
     let known = (0..3).filter(|&i| !truth.is_empty() && (i < 2 || is_continuous(truth)));
@@ -230,7 +230,7 @@ pub fn position(id: &str, placed: &Placed<'_>, truth: &[TrackPoint]) -> Figure {
         .with_all(truth)
 }
 
-/// The plan: the true way, ours, and others behind it.
+/// The plan: the true path and ours, with others behind.
 pub fn path(id: &str, truth: &[TrackPoint], ours: &Placed<'_>, others: Vec<Series>) -> Figure {
     let route = (!truth.is_empty()).then(|| {
         Series::path("true way", truth.iter().map(TrackPoint::horizontal))
@@ -249,7 +249,7 @@ pub fn path(id: &str, truth: &[TrackPoint], ours: &Placed<'_>, others: Vec<Serie
         .with(ours.strides("our strides").coloured(Colour::Ours))
 }
 
-/// Whether a truth is that of every sample rather than of footprints, which have no height.
+/// Whether a truth is known at every sample rather than at footprints, which have no height.
 fn is_continuous(truth: &[TrackPoint]) -> bool {
     truth.iter().any(|point| point.position[2].is_finite())
 }
@@ -265,7 +265,7 @@ fn times(samples: &[Sample]) -> Vec<f64> {
     samples.iter().map(|sample| seconds(sample.time_us)).collect()
 }
 
-/// Microseconds of the log's clock in seconds.
+/// Converts microseconds of the log's clock to seconds.
 pub fn seconds(time_us: u64) -> f64 {
     time_us as f64 / 1e6
 }

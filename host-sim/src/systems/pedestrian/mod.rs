@@ -1,7 +1,7 @@
-//! A foot-mounted IMU and zero-velocity updates.
+//! A foot-mounted IMU with zero-velocity updates.
 //!
-//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiment tracks what [`simulate`] makes, and
-//! `calibrate` finds what the IMU measures wrong.
+//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiment tracks the walks that [`simulate`] generates,
+//! and `calibrate` determines the errors of the IMU.
 //!
 //! Frames: *body* is the sensor's own, as mounted on the foot; *room* is right-handed with z up, its
 //! origin at the start of the walk.
@@ -40,7 +40,7 @@ use crate::system::{
 };
 use crate::table;
 
-/// The system.
+/// The pedestrian system.
 #[derive(Debug, Clone, Copy)]
 pub struct Pedestrian;
 

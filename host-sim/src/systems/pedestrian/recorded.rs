@@ -1,9 +1,9 @@
-//! The walks that the results are told of.
+//! The recorded walks whose results are reported.
 
 use crate::system::DataFile::There;
 use crate::system::{Measure, Over, Recorded, Study, Together};
 
-/// Log and truth of a walk over measured footprints.
+/// The log and truth of a walk over measured footprints.
 macro_rules! files {
     ($number:literal) => {
         &[
@@ -20,14 +20,14 @@ macro_rules! gcp {
     };
 }
 
-/// The same by the paper's method.
+/// A walk over measured footprints, tracked by the paper's method.
 macro_rules! published {
     ($number:literal) => {
         Recorded::new(concat!("exp", $number), files!($number), PUBLISHED).published()
     };
 }
 
-/// A walk under cameras.
+/// A walk under motion-capture cameras.
 macro_rules! vicon {
     ($name:literal) => {
         Recorded::new(
@@ -41,10 +41,10 @@ macro_rules! vicon {
     };
 }
 
-/// As the paper has it: integration, and stance by the magnitude of the specific force.
+/// The settings of the paper's method: integration, and stance by the magnitude of the specific force.
 const PUBLISHED: &[(&str, &str)] = &[("tracker", "lite"), ("detector", "magnitude:0.1")];
 
-/// Walks with known footprints, over a ruler and under cameras.
+/// The studies of walks with known footprints, measured with a ruler or under cameras.
 pub(super) const STUDIES: &[Study] = &[
     Study {
         id: "gcp",

@@ -1,4 +1,4 @@
-//! A walk as it was recorded, with its truth where that is known: from files or synthetic.
+//! Recorded walks, with the truth where it is known, from files or synthetic.
 
 pub mod calibration;
 pub mod log;
@@ -20,37 +20,37 @@ use super::simulate::sensor;
 use crate::Error;
 use crate::random::stream;
 
-/// A walk as it was recorded.
+/// A recorded walk and its related data.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Recording {
-    /// Where it was read.
+    /// The path of the log.
     pub path: PathBuf,
-    /// What the sensor said, corrected if that is known.
+    /// The log, corrected if there is a calibration.
     pub log: Log,
-    /// Where the foot stood; empty if nobody measured it.
+    /// The measured positions of the foot; empty if there are none.
     pub footprints: Vec<Footprint>,
-    /// What the other foot's sensor said, if it had one.
+    /// The recording of the other foot, if it had a sensor.
     pub other_foot: Option<Box<Self>>,
-    /// What the sensor measured wrong, and what it said before that was corrected; none if nobody knows.
+    /// The calibration of the sensor with the uncorrected samples; `None` if there is none.
     calibrated: Option<(Calibration<f64>, Vec<Sample>)>,
-    /// The class of the sensor, once it was looked for.
+    /// The class of the sensor, once it has been determined.
     pub(super) class: OnceLock<SensorClass>,
 }
 
-/// Where a synthetic walk leads.
+/// The route of a synthetic walk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Walked {
-    /// Once along the paper's route.
+    /// The paper's route, once.
     Route,
-    /// So many rounds through the same flat.
+    /// This number of rounds through the same flat.
     Rounds(u32),
 }
 
 impl Recording {
-    /// Reads a log and, if they were measured, its footprints.
+    /// Reads a log and its measured footprints, if there are any.
     ///
     /// # Errors
-    /// As [`log::read`] and [`truth::read`].
+    /// Those of [`log::read`] and [`truth::read`].
     pub fn read(path: &Path, footprints: Option<&Path>, options: &Options) -> Result<Self, Error> {
         let log = log::read(path, options)?;
         let footprints = footprints.map(|path| truth::read(path, &log)).transpose()?;
@@ -58,7 +58,7 @@ impl Recording {
         Ok(Self { path: path.to_path_buf(), log, footprints, ..Self::default() })
     }
 
-    /// With what the sensor measured wrong corrected.
+    /// Corrects the samples by a calibration.
     #[must_use]
     pub fn calibrated(mut self, calibration: Calibration<f64>) -> Self {
         let correct = |sample: &Sample| calibration::corrected(&calibration, sample);
@@ -67,21 +67,21 @@ impl Recording {
         Self { calibrated: Some((calibration, measured)), class: OnceLock::new(), ..self }
     }
 
-    /// What the sensor measured wrong, if that is known.
+    /// The calibration of the sensor, if there is one.
     pub fn calibration(&self) -> Option<&Calibration<f64>> {
         self.calibrated.as_ref().map(|(calibration, _)| calibration)
     }
 
-    /// What the sensor said, as it said it: the ends of its range are where they were.
+    /// The uncorrected samples, in which the limits of the sensor's range are undistorted.
     pub fn measured(&self) -> &[Sample] {
         self.calibrated.as_ref().map_or(&self.log.samples, |(_, measured)| measured)
     }
 
-    /// Walk number `index` of a seed, logged at `rate_hz`: that of the paper's route in the paper's text format,
-    /// with the rounding that comes with it, others with every bit of the sensor.
+    /// Generates the walk number `index` of a seed, logged at `rate_hz`: one on the paper's route in the paper's text
+    /// format, including its rounding, others in full precision.
     ///
     /// # Errors
-    /// None that a sensor could cause; those of [`log::parse`].
+    /// Those of [`log::parse`], which no sensor can cause.
     pub fn synthetic(walked: Walked, rate_hz: f64, seed: u64, index: u64) -> Result<Self, Error> {
         let mut rng = stream(seed, index);
         let scenario = walked.draw(&mut rng);
@@ -98,27 +98,27 @@ impl Recording {
         Ok(Self { path, log, footprints: scenario.footprints(), ..Self::default() })
     }
 
-    /// The rates to which it can be averaged down, Hz: least, most, and from one to the next.
+    /// The rates to which the log can be averaged down (Hz): minimum, maximum and step.
     pub fn rates_hz(&self) -> [f64; 3] {
         let own = resample::rate_hz(&self.log.samples).unwrap_or(1.0);
         [1.0, own.round().max(1.0), 1.0]
     }
 
-    /// Averaged down to this rate.
+    /// The recording averaged down to this rate.
     ///
     /// # Errors
-    /// As [`resample::average_down`].
+    /// Those of [`resample::average_down`].
     pub fn at_rate(&self, rate_hz: f64) -> Result<Self, Error> {
         let log = resample::average_down(&self.log, rate_hz)?;
-        // A log that is slower stays as it is.
+        // A slower log stays as it is.
         let at_rate = |other: &Self| other.at_rate(rate_hz).unwrap_or_else(|_| other.clone());
         let other_foot = self.other_foot.as_deref().map(|other| Box::new(at_rate(other)));
         let footprints = self.footprints.clone();
         Ok(Self { log, path: self.path.clone(), footprints, other_foot, ..Self::default() })
     }
 
-    /// Where the foot or the sensor truly was, as far as anybody knows: measured footprints replace what the
-    /// log says.
+    /// The true positions of the foot or the sensor, as far as they are known: measured footprints take precedence over
+    /// the truth in the log.
     pub fn truth(&self) -> Vec<TrackPoint> {
         let flat = |footprint: &Footprint| {
             let [x, y] = footprint.position;
@@ -132,7 +132,7 @@ impl Recording {
 }
 
 impl Walked {
-    /// Draws such a walk.
+    /// Draws a walk on this route.
     pub fn draw<R: rand_core::Rng + ?Sized>(self, rng: &mut R) -> Scenario {
         match self {
             Self::Route => Scenario::draw(rng),

@@ -1,4 +1,4 @@
-//! How a walk is tracked: what can be set, and what it means.
+//! The settings of the tracking of a walk.
 
 use clap::ValueEnum;
 use kestirim_pedestrian::detector::Magnitude;
@@ -8,14 +8,14 @@ use kestirim_replay::pedestrian::{DetectorKind, Options, SensorClass, TrackerKin
 use crate::metrics::STANDARD_GRAVITY;
 use crate::system::{Given, Idle, Literal, Setting, SettingValue, Settings, Shorthand};
 
-/// Least and greatest multiple of a detector's default threshold.
+/// The minimum and maximum multiple of a detector's default threshold.
 const FACTORS: [f64; 2] = [1e-6, 1e6];
 
-/// What a correction afterwards needs.
+/// The conditions of a correction after the walk, in words.
 pub(super) const LOOKING_BACK: &str =
     "is for --tracker ekf and --detector adaptive, without --causal";
 
-/// What can be set, for a recording that can be averaged down to these rates, Hz.
+/// The available settings, for a recording that can be averaged down to these rates (Hz).
 pub(super) fn table(rates: Option<[f64; 3]>) -> Vec<Setting> {
     let rates = rates.unwrap_or([1.0, 10_000.0, 1.0]);
     vec![
@@ -77,7 +77,7 @@ pub(super) fn table(rates: Option<[f64; 3]>) -> Vec<Setting> {
     ]
 }
 
-/// Why a setting has no effect as the others are, for a log that has a magnetometer or not, if that is known.
+/// Why a setting has no effect given the others, for a log with or without a magnetometer, if that is known.
 pub(super) fn idle(has_field: Option<bool>, settings: &Settings, name: &str) -> Option<Idle> {
     let detector = settings.chosen("detector");
     let scaled = [DetectorName::Variance, DetectorName::AngularRate, DetectorName::Shoe];
@@ -104,24 +104,24 @@ pub(super) fn idle(has_field: Option<bool>, settings: &Settings, name: &str) -> 
     }
 }
 
-/// Whether the heading may be corrected afterwards: that of the other trackers does not drift at a constant rate.
+/// Whether the heading may be corrected after the walk: that of the other trackers does not drift at a constant rate.
 pub(super) fn turns_back(settings: &Settings) -> bool {
     settings.chosen::<TrackerKind>("tracker") == TrackerKind::Ekf
         && settings.chosen::<DetectorName>("detector") == DetectorName::Adaptive
         && !settings.is_on("causal")
 }
 
-/// Whether the walk is said to go along walls at right angles.
+/// Whether the walk is declared to follow walls at right angles.
 pub(super) fn is_at_right_angles(settings: &Settings) -> bool {
     settings.is_on("right-angles") && turns_back(settings)
 }
 
-/// Whether the walk is said to end where it began.
+/// Whether the walk is declared to end where it began.
 pub(super) fn is_closed(settings: &Settings) -> bool {
     settings.is_on("closed") && turns_back(settings)
 }
 
-/// As set.
+/// The options of the tracker.
 pub fn options(settings: &Settings) -> Options {
     let factor = settings.decided("factor");
     let detector = match settings.chosen("detector") {
@@ -147,7 +147,7 @@ pub fn options(settings: &Settings) -> Options {
     }
 }
 
-/// The same in firmware.
+/// The equivalent configuration of firmware.
 pub(super) fn firmware(options: &Options) -> String {
     let (scalar, number) =
         (Literal::number_type(options.scalar), |value| Literal::number(options.scalar, value));
@@ -203,8 +203,8 @@ enum DetectorName {
     Shoe,
 }
 
-/// Reads `NAME:THRESHOLD`; none without a colon. The threshold of `magnitude` is in g, as in the paper; those
-/// of the others are in the units of [`DetectorKind`].
+/// Parses `NAME:THRESHOLD`; `None` without a colon. The threshold of `magnitude` is in g, as in the paper; those of the
+/// others are in the units of [`DetectorKind`].
 fn read_detector(text: &str) -> Option<Result<Given, String>> {
     let (name, threshold) = text.split_once(':')?;
     let threshold = threshold.parse().ok().filter(|value: &f64| value.is_finite() && *value > 0.0);

@@ -1,48 +1,50 @@
-//! Strides of a walk as people read them, and where it turned and stopped.
+//! The strides of a walk in readable form, and its turns and stops.
 
 use kestirim_replay::pedestrian::{Stride, Trace, Walk, position_at};
 
 use super::figures::seconds;
 use crate::system::{Sheet, Table};
 
-/// A right angle is a turn, even if it takes some strides and the foot cuts the corner; what people sway is far less.
+/// The minimum angle of a turn (°). A right angle is a turn, even if it takes several strides and the foot cuts the
+/// corner; the sway of straight walking is far less.
 const LEAST_TURN_DEG: f64 = 45.0;
-/// Two strides of a straight way differ by some degrees to either side; what turns by less ends a turn.
+/// The minimum change of heading per stride within a turn (°): on a straight path strides differ by some degrees to
+/// either side.
 const LEAST_CHANGE_DEG: f64 = 10.0;
-/// Who turns more slowly walks a bend: so many strides.
+/// The maximum number of strides of a turn: a slower one is a bend.
 const LONGEST_TURN: usize = 4;
-/// A walking foot stands for 0.4 to 0.7 s, a slow one for 1 s.
+/// The minimum duration of a stop (s): a stance takes 0.4 to 0.7 s in walking, 1 s in slow walking.
 const LEAST_STOP_S: f64 = 1.5;
 
 /// A stride, from the end of one stance to the end of the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Line {
-    /// As the tracker tells it.
+    /// The stride as the tracker reports it.
     pub stride: Stride,
-    /// Where the foot stood before, m.
+    /// The position of the foot before the stride (m).
     pub from: [f64; 3],
 }
 
 impl Line {
-    /// How much higher it ended, m.
+    /// The change of height over the stride, positive upwards (m).
     pub fn height_change_m(&self) -> f64 {
         self.stride.position[2] - self.from[2]
     }
 
-    /// Horizontal speed, the stance included, m/s; none of a stride that took no time.
+    /// The horizontal speed, including the stance (m/s); `None` for a stride of zero duration.
     pub fn speed_m_s(&self) -> Option<f64> {
         let Stride { length_m, duration_s, .. } = self.stride;
         (duration_s > 0.0).then(|| length_m / duration_s)
     }
 
-    /// Its direction, rad, anticlockwise from x of the room.
+    /// The direction of the stride (rad), anticlockwise from the room's x axis.
     pub fn heading_rad(&self) -> f64 {
         let ([x, y, _], [from_x, from_y, _]) = (self.stride.position, self.from);
         (y - from_y).atan2(x - from_x)
     }
 }
 
-/// The strides of a walk, each with where it began.
+/// The strides of a walk, each with its start.
 pub fn lines(walk: &Walk) -> Vec<Line> {
     let mut from = walk.strides.first().and_then(|first| {
         let lasted_us = (first.duration_s * 1e6).round() as u64;
@@ -55,18 +57,18 @@ pub fn lines(walk: &Walk) -> Vec<Line> {
     walk.strides.iter().map(line).collect()
 }
 
-/// A turn of the way.
+/// A turn of the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turn {
-    /// When the foot left the place, s.
+    /// The time at which the foot left the place of the turn (s).
     pub time_s: f64,
-    /// Where it turned most, m.
+    /// The position of the sharpest change (m).
     pub position: [f64; 3],
-    /// By how much, rad, anticlockwise.
+    /// The angle of the turn (rad), anticlockwise.
     pub angle_rad: f64,
 }
 
-/// Where the heading of the strides changes by more than 45° within four of them, to one side.
+/// The turns of a walk, at which the heading of the strides changes by more than 45° to one side within four of them.
 pub fn turns(walk: &Walk) -> Vec<Turn> {
     let (mut found, mut run) = (Vec::new(), Vec::new());
     for pair in walk.strides.windows(2) {
@@ -86,7 +88,8 @@ pub fn turns(walk: &Walk) -> Vec<Turn> {
     found
 }
 
-/// What strides that turn to the same side make together, if that is a turn: each with the change behind it.
+/// The turn that consecutive strides to the same side make, if it is large enough; each stride comes with the change
+/// after it.
 fn turn(run: &[(Stride, f64)]) -> Option<Turn> {
     let angle_rad: f64 = run.iter().map(|(_, change)| change).sum();
     let (at, _) = run.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
@@ -97,15 +100,15 @@ fn turn(run: &[(Stride, f64)]) -> Option<Turn> {
 /// A stop: a stance far longer than those of walking.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
-    /// When it began, s.
+    /// The start of the stop (s).
     pub time_s: f64,
-    /// How long it was, s.
+    /// The duration of the stop (s).
     pub duration_s: f64,
-    /// Where, m.
+    /// The position of the foot (m).
     pub position: [f64; 3],
 }
 
-/// Stances between the first stride and the last that take longer than 1.5 s.
+/// The stops of a walk: stances longer than 1.5 s between the first and the last stride.
 pub fn stops(trace: &Trace) -> Vec<Stop> {
     let strides = &trace.walk.strides;
     let (Some(first), Some(last)) = (strides.first(), strides.last()) else { return Vec::new() };
@@ -132,7 +135,7 @@ pub fn stances(trace: &Trace) -> Vec<[usize; 2]> {
     found
 }
 
-/// The strides for the page.
+/// The table of strides for the page.
 pub fn sheet(walk: &Walk) -> Sheet {
     let lines = lines(walk);
     let header = [
@@ -154,13 +157,14 @@ pub fn sheet(walk: &Walk) -> Sheet {
         .timed(lines.iter().map(|line| seconds(line.stride.time_us)))
 }
 
-/// The strides for a file.
+/// The table of strides for a file.
 pub fn table(walk: &Walk) -> Table {
     let header = ["stride", "t", "length", "height_change", "duration", "speed", "heading_deg"];
     Table { rows: cells(&lines(walk), [6, 4, 4, 4, 4, 2]), ..Table::new(&header) }
 }
 
-/// Number, time, length, change of height, duration, speed and heading, with so many decimals.
+/// The number, time, length, change of height, duration, speed and heading of strides, with the given numbers of
+/// decimals.
 fn cells(lines: &[Line], decimals: [usize; 6]) -> Vec<Vec<String>> {
     let row = |(place, line): (usize, &Line)| {
         let Stride { time_us, length_m, duration_s, .. } = line.stride;

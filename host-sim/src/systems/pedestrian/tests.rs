@@ -117,7 +117,7 @@ fn without_updates_the_foot_never_stands_again_and_the_velocity_drifts() {
     assert!(last_speed(&trace(&log.samples, &options).unwrap()) < 0.05);
 }
 
-/// The paper's route: strides of 1.26 m on average, east, north, east, north and west.
+/// A walk on the paper's route, with strides of 1.26 m on average: east, north, east, north and west.
 fn route() -> (Recording, Trace) {
     let recording = Recording::synthetic(Walked::Route, 100.0, 3, 0).unwrap();
     let trace = trace(&recording.log.samples, &Options::default()).unwrap();
@@ -135,10 +135,10 @@ fn strides_are_as_long_and_lead_where_the_foot_went() {
         let length = line.stride.length_m;
         assert!((length - true_length).abs() < 0.05, "{length} m instead of {true_length} m");
         assert!(line.height_change_m().abs() < 0.05, "{line:?}");
-        // The stance of the last goes on to the end of the log.
+        // The last stance extends to the end of the log.
         let usual = if line.stride == *trace.walk.strides.last().unwrap() { 0.3 } else { 0.7 };
         assert!((usual..1.5).contains(&line.speed_m_s().unwrap()), "{line:?}");
-        // The sensor sits askew on the foot: headings are counted from the first.
+        // The sensor is mounted at an angle on the foot: headings are relative to the first.
         let turned = line.heading_rad() - lines[0].heading_rad() - heading.to_radians();
         assert!(turned.sin().abs() < 0.06 && turned.cos() > 0.0, "{turned} rad from {heading}°");
     }
@@ -152,7 +152,7 @@ fn right_angles_are_turns_and_what_is_straight_is_none() {
     let (recording, trace) = route();
     let turns = strides::turns(&trace.walk);
     let angles: Vec<_> = turns.iter().map(|turn| turn.angle_rad.to_degrees()).collect();
-    // The last two corners are a stride apart, to the same side.
+    // The last two corners are one stride apart, to the same side.
     assert_eq!(angles.len(), 3, "{angles:?}");
     for (angle, expected) in angles.into_iter().zip([90.0, -90.0, 180.0]) {
         assert!((angle - expected).abs() < 8.0, "{angle}° instead of {expected}°");
@@ -169,7 +169,7 @@ fn right_angles_are_turns_and_what_is_straight_is_none() {
 fn standing_for_long_on_the_way_is_a_stop() {
     let (recording, before) = route();
     let mut samples = recording.log.samples.clone();
-    // As it stood before the walk, for two seconds, in the middle of the fifth stance.
+    // Two seconds of the standstill before the walk, inserted in the middle of the fifth stance.
     let [from, to] = strides::stances(&before)[5];
     let place = usize::midpoint(from, to);
     let still: Vec<_> = samples[..200].to_vec();
@@ -197,11 +197,11 @@ fn the_foot_is_level_where_it_stands_and_turned_as_it_walks() {
     let (_, roll, _) = angles("roll");
     let (_, pitch, pitches) = angles("pitch");
     let (begin, yaw, _) = angles("yaw");
-    // The sensor is mounted with a tilt of 25°, of which the foot knows nothing.
+    // The sensor is mounted with a tilt of 25°, which must not show in the foot's attitude.
     assert!(roll.abs() < 5.0 && pitch.abs() < 5.0, "roll {roll}°, pitch {pitch}°");
     let turned = yaw.to_radians();
     assert!(begin.abs() < 2.0 && turned.cos() < -0.98, "yaw from {begin}° to {yaw}°");
-    // Toes down when they leave the floor, up when the heel strikes: simulated with −60° and 25°.
+    // Toes down at toe-off, up at heel strike: simulated with −60° and 25°.
     let [low, high] = [f64::min, f64::max].map(|of| pitches.y.iter().copied().fold(0.0, of));
     assert!((-75.0..-45.0).contains(&low) && (15.0..40.0).contains(&high), "{low}° to {high}°");
 }

@@ -1,4 +1,4 @@
-//! Tracks a recording.
+//! Tracking of a recording.
 
 use kestirim_pedestrian::SensorClass;
 use kestirim_replay::pedestrian::{self, Trace, Walk, sensor_class, trace, walk};
@@ -8,20 +8,20 @@ use super::settings::{LOOKING_BACK, is_at_right_angles, is_closed, options, turn
 use crate::Error;
 use crate::system::{Detail, Settings};
 
-/// What the tracker made of a recording.
+/// The tracker's results for a recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
-    /// The recording at another rate, if one was chosen.
+    /// The recording at another rate, if one was selected.
     averaged: Option<Recording>,
-    /// Without moments if only the result was wanted.
+    /// The trace, without moments if only the result was wanted.
     pub trace: Trace,
 }
 
 impl Track {
-    /// Tracks a recording as set.
+    /// Tracks a recording according to the settings.
     ///
     /// # Errors
-    /// [`Error::File`] if no tracker takes the log, [`Error::Usage`] for a rate that it does not have.
+    /// [`Error::File`] if the tracker refuses the log, [`Error::Usage`] for a rate that the log does not support.
     pub fn of(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Self, Error> {
         let rate_hz = settings.number("rate");
         let averaged = rate_hz.map(|rate_hz| recording.at_rate(rate_hz)).transpose()?;
@@ -43,7 +43,7 @@ impl Track {
         Ok(Self { averaged, trace })
     }
 
-    /// What was tracked of a recording.
+    /// The recording that was tracked: at another rate, if one was selected.
     pub fn tracked<'a>(&'a self, recording: &'a Recording) -> &'a Recording {
         self.averaged.as_ref().unwrap_or(recording)
     }
@@ -65,7 +65,7 @@ fn foot(recording: &Recording, settings: &Settings, detail: Detail) -> Result<Tr
     Ok(trace)
 }
 
-/// Corrects a foot by the other one, or warns why not; what is suspicious about the other's log is told, too.
+/// Corrects a foot by the other one, or warns why it cannot; warnings about the other's log are added as well.
 fn join(walk: &mut Walk, other: &Recording, settings: &Settings) -> Result<(), Error> {
     if !turns_back(settings) {
         walk.warnings.push(format!("the other foot is not used: it {LOOKING_BACK}"));
@@ -81,12 +81,13 @@ fn join(walk: &mut Walk, other: &Recording, settings: &Settings) -> Result<(), E
     Ok(())
 }
 
-/// A complaint that no tracker takes a recording.
+/// The error that the tracker refuses a recording.
 pub(super) fn refused(recording: &Recording, error: &pedestrian::Error) -> Error {
     Error::File { path: recording.path.clone(), problem: error.to_string() }
 }
 
-/// The class of a recording's sensor, looked for once; that of bare chips if it never stood still. Truth is not asked.
+/// The class of a recording's sensor, determined once; that of bare chips if the sensor was never stationary. The truth
+/// is not used.
 pub(super) fn class_of(recording: &Recording) -> SensorClass {
     let found = || sensor_class(&recording.log.samples, recording.measured());
     *recording.class.get_or_init(found)

@@ -1,4 +1,4 @@
-//! What came of a recording.
+//! The results of a recording.
 
 pub mod accuracy;
 
@@ -16,7 +16,7 @@ use crate::Error;
 use crate::system::{Account, Settings, System, Table};
 use crate::text::printable;
 
-/// What a replay prints.
+/// The report that a replay prints.
 #[derive(Debug, Clone, Serialize)]
 struct Report {
     system: &'static str,
@@ -35,7 +35,8 @@ struct Report {
     points: Option<Vec<PointReport>>,
 }
 
-/// The height of the tag as its ranges tell it, m, and what it adds to the position's standard deviation.
+/// The height of the tag as determined from its ranges (m), and its contribution to the standard deviation of the
+/// position.
 #[derive(Debug, Clone, Serialize)]
 struct HeightReport {
     metres: f64,
@@ -45,14 +46,14 @@ struct HeightReport {
     biases_m: Vec<f64>,
 }
 
-/// What a smoother made of it, and what it found out of the anchors.
+/// The results of the smoother, including what it determined about the anchors.
 #[derive(Debug, Clone, Serialize)]
 struct SmoothedReport {
     accuracy: Option<Accuracy>,
-    /// What all anchors measure too long, m, in addition to what was known beforehand …
+    /// The common bias of all anchors (m), in addition to what was known beforehand.
     common_bias_m: f64,
     common_bias_sigma_m: f64,
-    /// … and what more in 10 m of distance, m.
+    /// The further excess of the ranges per 10 m of distance (m).
     excess_in_10_m: f64,
     excess_in_10_m_sigma: f64,
     anchors: Vec<AnchorReport>,
@@ -60,7 +61,7 @@ struct SmoothedReport {
     points: Option<Vec<PointReport>>,
 }
 
-/// What an anchor measures too long in addition to all of them, m.
+/// The bias of an anchor (m), in addition to that of all of them.
 #[derive(Debug, Clone, Serialize)]
 struct AnchorReport {
     anchor: String,
@@ -68,7 +69,7 @@ struct AnchorReport {
     sigma_m: f64,
 }
 
-/// Where the tag was found at a marked point, m.
+/// The estimated position of the tag at a marked point (m).
 #[derive(Debug, Clone, Serialize)]
 struct PointReport {
     point: String,
@@ -77,7 +78,7 @@ struct PointReport {
     z: f64,
 }
 
-/// What came of a recording.
+/// Evaluates a recording.
 pub(super) fn account(
     recording: &Recording,
     settings: &Settings,
@@ -145,7 +146,7 @@ pub(super) fn account(
     Ok(account)
 }
 
-/// Where a moving tag is at the end of its log, with its standard deviations, m.
+/// The position of a moving tag at the end of its log, with its standard deviations (m), as text.
 fn last_position(recording: &Recording, traces: &[Trace]) -> Option<String> {
     let last = traces.last().filter(|_| !recording.is_static())?.epochs.last()?;
     let Some(position) = last.position else { return Some("not known".to_owned()) };
@@ -157,7 +158,7 @@ fn last_position(recording: &Recording, traces: &[Trace]) -> Option<String> {
     Some(told.collect::<Vec<_>>().join(", "))
 }
 
-/// The anchor of which the largest share was left out, if any was.
+/// The anchor with the largest share of rejected ranges, if any were rejected.
 fn worst(links: &[Link]) -> Option<String> {
     let shares = links.iter().filter_map(|link| Some((link, link.rejected_share?)));
     let (link, share) =
@@ -165,7 +166,7 @@ fn worst(links: &[Link]) -> Option<String> {
     Some(format!("{}: {:.1} % of {}", printable(&link.anchor), 100.0 * share, link.ranges))
 }
 
-/// The points at which there is a position; none of a moving tag.
+/// The estimated positions at the points; `None` for a moving tag.
 fn points(
     recording: &Recording,
     last: impl Iterator<Item = Option<[f64; 3]>>,
@@ -200,7 +201,7 @@ fn of_smoothed(recording: &Recording, smoothed: &Smoothed) -> SmoothedReport {
     }
 }
 
-/// Why there is no position.
+/// The reason why there is no position.
 fn nowhere(recording: &Recording, dimensions: Dimensions) -> String {
     let heard = |event: &Event| match event {
         Event::Range(range) => vec![range.anchor],
@@ -246,7 +247,7 @@ fn warnings(
         None => {}
     }
     if let Some(share) = mirrored(traces, recording.is_static()) {
-        // A room is one of the plane.
+        // A room is a rectangle in the plane.
         let hint = match (setup.dimensions, setup.room.is_some()) {
             (Dimensions::Three, _) => ": --dim 2 with --height may tell which",
             (Dimensions::Two, false) => ": --room may tell which",
@@ -260,7 +261,7 @@ fn warnings(
     warnings
 }
 
-/// Position and standard deviations, as far as they are known, at every epoch or at every point.
+/// The table of position and standard deviations, as far as they are known, at every epoch or at every point.
 pub(super) fn table(recording: &Recording, tracks: &Tracks) -> Table {
     let first = if recording.is_static() { "point" } else { "t" };
     let mut table = Table::new(&[first, "x", "y", "z", "sx", "sy", "sz"]);

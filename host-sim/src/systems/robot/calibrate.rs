@@ -1,4 +1,4 @@
-//! `host-sim calibrate robot`: what each anchor measures too long.
+//! `host-sim calibrate robot`: determines the range bias of each anchor.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use super::recording::{points, ranges};
 use crate::system::{Calibration, System};
 use crate::{Error, output};
 
-/// The command.
+/// The command for the calibration.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Calibrate;
 
@@ -113,7 +113,7 @@ impl Options {
     }
 }
 
-/// Writes the calibration of the recording of a folder of which the truth is known.
+/// Writes the calibration from a folder whose recording has a known truth.
 pub(super) fn from_truth(folder: &Path, to: &Path) -> Result<(), Error> {
     let [anchors, log, truth] =
         ["anchors.csv", "ranges.csv", "truth.csv"].map(|it| folder.join(it));
@@ -128,7 +128,7 @@ pub(super) fn from_truth(folder: &Path, to: &Path) -> Result<(), Error> {
     options.write().map(drop)
 }
 
-/// What the command prints.
+/// The report that the command prints.
 #[derive(Debug, Clone, Serialize)]
 struct Report {
     system: &'static str,

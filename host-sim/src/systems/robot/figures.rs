@@ -1,4 +1,4 @@
-//! What a recording and its track look like.
+//! Figures of a recording and its track.
 
 pub mod dilution;
 pub mod links;
@@ -17,12 +17,12 @@ use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::distance;
 use crate::system::Answer;
 
-/// Ellipses along a track.
+/// The number of ellipses along a track.
 const ELLIPSES: usize = 30;
-/// Between the points of a static recording, s.
+/// The pause between the points of a static recording (s).
 const PAUSE_S: f64 = 0.5;
 
-/// The page's figures and its table, with trilateration alone to compare with.
+/// Adds the page's figures and its table, with trilateration alone for comparison.
 pub(super) fn draw(
     recording: &Recording,
     setup: &Setup,
@@ -62,17 +62,17 @@ pub(super) fn draw(
     Ok(())
 }
 
-/// A recording, what was made of it, and when its parts are shown.
+/// A recording, its traces, and the times at which its parts are shown.
 #[derive(Debug, Clone)]
 pub struct Shown<'a> {
     recording: &'a Recording,
     traces: &'a [Trace],
-    /// What is added to the log's clock in each part, s.
+    /// The offset that is added to the log's clock in each part (s).
     shifts_s: Vec<f64>,
 }
 
 impl<'a> Shown<'a> {
-    /// Points that were recorded one by one are shown one after the other.
+    /// Arranges a recording for display: points that were recorded separately are shown one after the other.
     pub fn new(recording: &'a Recording, traces: &'a [Trace]) -> Self {
         let mut begin_s = 0.0;
         let mut shifts_s = Vec::with_capacity(recording.parts.len());
@@ -84,7 +84,7 @@ impl<'a> Shown<'a> {
         Self { recording, traces, shifts_s }
     }
 
-    /// When something of a part is shown, s.
+    /// The time at which an event of a part is shown (s).
     fn seconds(&self, part: usize, time_us: i64) -> f64 {
         time_us as f64 * 1e-6 + self.shifts_s.get(part).copied().unwrap_or_default()
     }
@@ -108,7 +108,7 @@ impl<'a> Shown<'a> {
         Series::new(name, mark, xs, ys)
     }
 
-    /// Every position that was found, with its time, and its covariance where the tracker knows any.
+    /// Every estimated position, with its time, and its covariance if the tracker has one.
     pub fn track(&self, name: &str, mark: Mark) -> Series {
         let (mut places, mut times, mut spreads) = (Vec::new(), Vec::new(), Vec::new());
         for (part, trace) in self.traces.iter().enumerate() {
@@ -127,7 +127,7 @@ impl<'a> Shown<'a> {
         if is_known { series.uncertain(spreads) } else { series }
     }
 
-    /// Where 95 of 100 positions would be if the tracker's covariance were right.
+    /// Ellipses that contain 95 % of the positions if the tracker's covariance is right.
     fn ellipses(&self) -> Series {
         let mut points = Vec::new();
         for trace in self.traces {
@@ -147,7 +147,7 @@ impl<'a> Shown<'a> {
         Series::path("95 % ellipses", points).coloured(Colour::Other(3))
     }
 
-    /// The plan: walls, anchors, the true path, the track with its ellipses, and others behind it.
+    /// The plan: anchors, the true path, the track with its ellipses, and others behind it.
     pub fn plan(&self, id: &str, others: Vec<Series>) -> Figure {
         room(id, self.recording)
             .caption("Anchors, the true path where it is known, and the track; ellipses hold 95 % if the covariance is right.")
@@ -156,7 +156,7 @@ impl<'a> Shown<'a> {
             .with(self.ellipses())
     }
 
-    /// Ranges of each anchor; crosses are what the tracker left out.
+    /// The ranges of each anchor; crosses are those that the tracker rejected.
     pub fn ranges(&self, id: &str) -> Figure {
         let of = |anchor: usize, taken: bool| {
             move |_: usize, trace: &Trace| -> Vec<(i64, f64)> {
@@ -183,7 +183,7 @@ impl<'a> Shown<'a> {
         figure.with(Series::new("left out", Mark::Crosses, xs, ys).coloured(Colour::Alarm))
     }
 
-    /// Standard deviation of the position over time, as far as the tracker knows it.
+    /// The standard deviation of the position over time, as far as the tracker has one.
     fn sigma(&self, name: &str) -> Series {
         let sigma = |_: usize, trace: &Trace| {
             let epochs = trace.epochs.iter();
@@ -192,7 +192,7 @@ impl<'a> Shown<'a> {
         self.over_time(name, self.line(), sigma)
     }
 
-    /// Coordinates over time, with the truth where it is known.
+    /// The coordinates over time, with the truth if it is known.
     pub fn position(&self, id: &str) -> Figure {
         let ours = ["x", "y", "z"].into_iter().enumerate().map(|(axis, name)| {
             let of = move |_: usize, trace: &Trace| {
@@ -219,13 +219,13 @@ impl<'a> Shown<'a> {
             .with_all(ours)
     }
 
-    /// A line, or points where each part has a single position.
+    /// The mark of a track: a line, or points if each part has a single position.
     pub fn line(&self) -> Mark {
         let is_single = |trace: &Trace| trace.epochs.len() < 2;
         if self.traces.iter().all(is_single) { Mark::Points } else { Mark::Line }
     }
 
-    /// Horizontal error over time; empty where no truth is known.
+    /// The horizontal error over time; empty if the truth is not known.
     pub fn error(&self, name: &str) -> Series {
         let of = |part: usize, trace: &Trace| {
             let error = |position: Option<[f64; 3]>, time_us| {
@@ -243,7 +243,7 @@ impl<'a> Shown<'a> {
     }
 }
 
-/// Errors over time of one or more trackers.
+/// The errors of one or more trackers over time.
 pub fn errors(id: &str, series: impl IntoIterator<Item = Series>) -> Figure {
     Figure::new(id, "Error")
         .over_seconds("horizontal error, cm")

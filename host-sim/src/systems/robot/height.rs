@@ -1,4 +1,4 @@
-//! The height of a tag of which nobody says how high it is: from its ranges, or not at all.
+//! The height of a tag whose height is not given: determined from its ranges, or not at all.
 
 use std::sync::OnceLock;
 
@@ -9,21 +9,22 @@ use super::track::refused;
 use crate::Error;
 use crate::system::Settings;
 
-/// The height of a recording with uncalibrated and with calibrated anchors: searched once, asked for at every slider.
+/// The height found with uncalibrated and with calibrated anchors: searched for once, and read at every change of a
+/// slider.
 #[derive(Debug, Clone, Default)]
 pub(super) struct FoundOnce([OnceLock<Result<FoundHeight, String>>; 2]);
 
-/// Whether nobody says how high the tag is.
+/// Whether the height of the tag is not given.
 pub(super) fn is_missing(recording: &Recording, settings: &Settings) -> bool {
     settings.chosen::<Dimensions>("dim") == Dimensions::Two
         && recording.heights == Heights::Unknown
         && !settings.is_given("height")
 }
 
-/// The height at which the tag of a recording is, from its ranges alone.
+/// The height of a recording's tag, from its ranges alone.
 ///
 /// # Errors
-/// [`Error::Usage`], naming the option that is missing: the ranges do not tell it.
+/// [`Error::Usage`] that names the missing option if the ranges do not determine the height.
 pub(super) fn of_recording(recording: &Recording, setup: &Setup) -> Result<FoundHeight, Error> {
     let found = &recording.found_height.0[usize::from(setup.biases.is_some())];
     let parts = || recording.parts.iter().map(|part| part.events.as_slice());
@@ -32,7 +33,7 @@ pub(super) fn of_recording(recording: &Recording, setup: &Setup) -> Result<Found
     found.get_or_init(search).clone().map_err(Error::Usage)
 }
 
-/// As people read it.
+/// The height as text.
 pub(super) fn in_words(found: &FoundHeight) -> String {
     let FoundHeight { metres, sigma_m, position_sigma_m, .. } = found;
     let moved = 100.0 * position_sigma_m;

@@ -1,4 +1,4 @@
-//! Ranges by their anchor: what they leave over, and which are left out.
+//! Ranges by anchor: residuals and rejections.
 
 use std::cmp::Ordering;
 
@@ -10,25 +10,25 @@ use super::recording::Recording;
 use crate::metrics::median;
 use crate::system::Sheet;
 
-/// A range, and what the tracker made of it.
+/// A range, and the tracker's assessment of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Judged {
     /// The part of the recording, counted from 0.
     pub part: usize,
-    /// Time of the log's clock, µs.
+    /// The time of the log's clock (µs).
     pub time_us: i64,
-    /// The innovation, m; of a tracker that does not weigh ranges one by one what the range is longer than the distance to the
-    /// position that was found with it.
+    /// The innovation (m); for a tracker that does not weigh ranges individually, the excess of the range over the
+    /// distance to the position found with it.
     pub residual_m: Option<f64>,
-    /// Standard deviation of the innovation, m, from a tracker that weighs ranges one by one.
+    /// The standard deviation of the innovation (m), for a tracker that weighs ranges individually.
     pub sigma_m: Option<f64>,
     /// The normalised innovation squared.
     pub nis: Option<f64>,
-    /// Whether it was taken in.
+    /// Whether the range was accepted.
     pub taken: bool,
 }
 
-/// The ranges of each anchor, in the order of the anchors and of time.
+/// The ranges of each anchor, in the order of the anchors, then of time.
 pub fn of_anchors(recording: &Recording, setup: &Setup, traces: &[Trace]) -> Vec<Vec<Judged>> {
     let mut links = vec![Vec::new(); recording.anchors.names.len()];
     for (part, trace) in traces.iter().enumerate() {
@@ -65,29 +65,29 @@ fn judged(
     }
 }
 
-/// An anchor's ranges in numbers.
+/// Statistics of an anchor's ranges.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Link {
-    /// Its name.
+    /// The name of the anchor.
     pub anchor: String,
-    /// How many ranges it gave …
+    /// The number of ranges.
     pub ranges: usize,
-    /// … in a second, from its first to its last of each part.
+    /// The number of ranges per second, from the first to the last in each part.
     pub rate_hz: Option<f64>,
-    /// The share that was left out, from 0 to 1.
+    /// The share of rejected ranges, from 0 to 1.
     pub rejected_share: Option<f64>,
-    /// The median of what its ranges leave over, m, …
+    /// The median of the residuals (m).
     pub median_m: Option<f64>,
-    /// … and of how far they are from that: the median absolute deviation, m.
+    /// The median absolute deviation of the residuals from their median (m).
     pub mad_m: Option<f64>,
-    /// Mean NIS of what was taken in.
+    /// The mean NIS of the accepted ranges.
     pub nis: Option<f64>,
-    /// The longest time between two ranges, s.
+    /// The longest time between two ranges (s).
     pub longest_gap_s: Option<f64>,
 }
 
 impl Link {
-    /// Every anchor's.
+    /// The statistics of all anchors.
     pub fn all(recording: &Recording, setup: &Setup, traces: &[Trace]) -> Vec<Self> {
         let links = of_anchors(recording, setup, traces);
         let named = recording.anchors.names.iter().zip(links);
@@ -121,7 +121,7 @@ impl Link {
     }
 }
 
-/// The anchors, those of which most was left out first.
+/// The table of anchors, those with the largest share of rejected ranges first.
 pub fn table(links: &[Link]) -> Sheet {
     let mut links: Vec<_> = links.iter().collect();
     links
@@ -169,7 +169,7 @@ mod tests {
     use crate::systems::robot::track::track;
     use kestirim_replay::robot::{Event, TrackerKind};
 
-    /// The straight line, from whose middle on one in so many ranges of an anchor is 3 m too long.
+    /// A run along the straight line in whose second half one in `one_in` ranges of an anchor is 3 m too long.
     fn with_a_bad_anchor(one_in: usize) -> Recording {
         let mut recording = Recording::synthetic(Driven::Line, 0);
         let events = &mut recording.parts[0].events;
@@ -184,7 +184,8 @@ mod tests {
 
     #[test]
     fn the_bad_anchor_stands_out() {
-        // What is too long now and then is left out; what always is, the tracker takes in at last, with little weight.
+        // A range that is too long only sometimes is rejected; a bias that is always there is finally accepted, with
+        // little weight.
         for one_in in [3, 1] {
             let (recording, setup) = (with_a_bad_anchor(one_in), of_the_office(ScalarKind::F32));
             let traces = track(&recording, &setup).unwrap();

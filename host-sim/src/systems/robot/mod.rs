@@ -1,7 +1,7 @@
 //! A robot among ultra-wideband anchors.
 //!
-//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiment tracks what [`simulate`] draws, and
-//! `calibrate` finds what the anchors measure too long.
+//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiment tracks what [`simulate`] generates, and
+//! `calibrate` determines the biases of the anchors.
 //!
 //! Frame: *room*, right-handed with z up, as the anchors are given.
 
@@ -40,7 +40,7 @@ use crate::system::{
     Plan, RunOptions, Setting, Settings, Study, System, Table,
 };
 
-/// The system.
+/// The robot system.
 #[derive(Debug, Clone, Copy)]
 pub struct Robot;
 

@@ -1,4 +1,4 @@
-//! The recordings that the results are told of.
+//! The recordings whose results are reported.
 
 use std::fs;
 use std::path::Path;
@@ -18,7 +18,7 @@ const CORNERS: DataFile = Made(Making {
     make: corners,
 });
 
-/// What the anchors measure too long, from a run of the same day with nobody in the way.
+/// The biases of the anchors, from a run on the same day with no person in the way.
 macro_rules! biases {
     ($free:literal) => {
         Made(Making {
@@ -42,7 +42,7 @@ macro_rules! biases {
     };
 }
 
-/// A run of a tag that moves, with more files and with settings.
+/// A run of a moving tag, with further files and settings.
 macro_rules! moving {
     ($name:literal, [$($more:expr),*], $settings:expr) => {
         Recorded::new(
@@ -58,14 +58,14 @@ macro_rules! moving {
     };
 }
 
-/// A run with a person before an anchor; the tag's height is the mean of the true one.
+/// A run with a person in front of an anchor; the tag's height is set to the mean of the true one.
 macro_rules! blocked {
     ($name:literal, $free:literal, $height:literal) => {
         moving!($name, [("calibration", biases!($free))], &[("height", $height)])
     };
 }
 
-/// Points, people in the way, a wall in the way, and a mower.
+/// The studies: points, people in the way, a wall in the way, and a mower.
 pub(super) const STUDIES: &[Study] = &[
     Study {
         id: "points",
@@ -142,7 +142,7 @@ const RMSE: Measure = Measure::new("RMSE", "cm", "/accuracy/rmse_m").times(100.0
 const RATIO: Measure =
     Measure::new("error over standard deviation", "", "/accuracy/error_over_sigma");
 
-/// Leaves out the anchors between the corners.
+/// Removes the anchors between the corners.
 fn corners(data: &Path, to: &Path) -> Result<(), Error> {
     let path = data.join(POINTS);
     let text = fs::read_to_string(&path).map_err(|source| Error::Read { path, source })?;

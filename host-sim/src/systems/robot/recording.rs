@@ -1,4 +1,4 @@
-//! What was recorded of a tag, with its truth where that is known: from files or synthetic.
+//! Recordings of a tag, with the truth where it is known, from files or synthetic.
 
 pub mod anchors;
 pub mod calibration;
@@ -20,70 +20,70 @@ use crate::system::Files;
 use crate::table::{self, Found};
 use crate::text::printable_path;
 
-/// What was recorded.
+/// A recording of a tag.
 #[derive(Debug, Clone, Default)]
 pub struct Recording {
-    /// Where the ranges were read; none of a synthetic one.
+    /// The path of the ranges; `None` for a synthetic recording.
     pub path: Option<PathBuf>,
-    /// Where the anchors are.
+    /// The positions of the anchors.
     pub anchors: Anchors,
-    /// The one track of a moving tag, or every point at which it was put down: each is tracked by itself.
+    /// The single track of a moving tag, or every point at which it was put down; each is tracked separately.
     pub parts: Vec<Part>,
-    /// What the anchors measure too long, m, if that is known.
+    /// The bias of each anchor's ranges (m), if known.
     pub biases: Option<Vec<f64>>,
-    /// What is known of the tag's height.
+    /// The knowledge of the tag's height.
     pub heights: Heights,
-    /// What was concluded about columns and units of logs.
+    /// The conclusions about columns and units of logs.
     pub import: Vec<String>,
-    /// What is suspicious but readable.
+    /// Warnings about readable but suspicious contents.
     pub warnings: Vec<String>,
-    /// The tag's height as the ranges tell it, where nobody says it.
+    /// The tag's height as found from the ranges, if it is not given.
     pub(super) found_height: FoundOnce,
 }
 
-/// What is known of a tag's height.
+/// The knowledge of a tag's height.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Heights {
-    /// Nothing.
+    /// The height is unknown.
     #[default]
     Unknown,
-    /// It is the anchors' mean height.
+    /// The height is the anchors' mean height.
     OfAnchors,
-    /// It was read from a file.
+    /// The height was read from a file.
     Read,
 }
 
-/// What belongs together.
+/// A part of a recording that is tracked by itself.
 #[derive(Debug, Clone, Default)]
 pub struct Part {
-    /// Name of the point; empty of a moving tag.
+    /// The name of the point; empty for a moving tag.
     pub name: String,
-    /// What the sensors say, in the order in which trackers take it.
+    /// The sensor events, in the order in which trackers process them.
     pub events: Vec<Event>,
-    /// Where the tag was, if anybody knows.
+    /// The true position of the tag, if known.
     pub truth: Option<Truth>,
-    /// The height of the tag at the point, m, if it was read.
+    /// The height of the tag at the point (m), if it was read.
     pub height_m: Option<f64>,
 }
 
 impl Part {
-    /// Whether wheels were read.
+    /// Whether there is wheel odometry.
     pub fn has_wheels(&self) -> bool {
         self.events.iter().any(|event| matches!(event, Event::Wheels(_)))
     }
 }
 
-/// Where the tag was.
+/// The true position of a tag.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Truth {
-    /// At a marked point, m.
+    /// A marked point (m).
     Point([f64; 2]),
-    /// Along a path.
+    /// A path over time.
     Course(Course<2>),
 }
 
 impl Truth {
-    /// Where it was at a time of the log's clock, m.
+    /// The position at a time of the log's clock (m).
     pub fn at(&self, time_us: i64) -> Option<[f64; 2]> {
         match self {
             Self::Point(point) => Some(*point),
@@ -92,14 +92,14 @@ impl Truth {
     }
 }
 
-/// What a robot did in the paper's office.
+/// The motion of a synthetic robot in the paper's office.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Driven {
-    /// It stood at the fifteen points.
+    /// It stands at the fifteen points.
     Points,
-    /// It drove the straight line.
+    /// It drives along the straight line.
     Line,
-    /// It drove a round, with somebody before each anchor in turn.
+    /// It drives a round, with a person in front of each anchor in turn.
     CrowdedRound,
 }
 
@@ -107,7 +107,7 @@ impl Recording {
     /// Reads the files.
     ///
     /// # Errors
-    /// The file, the line, and what was expected there.
+    /// An error that names the file, the line, and what was expected there.
     pub fn read(files: &Files) -> Result<Self, Error> {
         files.exclude("points", &["truth", "imu", "odom"])?;
         let (anchors, log) = (files.required("anchors")?, files.required("log")?);
@@ -149,7 +149,7 @@ impl Recording {
                 })
             }
             "calibration" => table::has(path, ["anchor", "bias"]),
-            // Of a tag that is put down the log tells at which point.
+            // For a tag that is put down, the log names the point.
             _ if files.one("log").is_some_and(|log| table::has(log, ["point"])) => match field {
                 "points" => table::has(path, ["point", "x", "y", "z"]),
                 "height" => table::has(path, ["point", "z"]) && !table::has(path, ["x"]),
@@ -229,13 +229,13 @@ impl Recording {
         Ok(())
     }
 
-    /// Keeps how a log was read.
+    /// Adds the conclusions and warnings about a log.
     fn tell(&mut self, log: &str, found: &Found) {
         self.import.extend(found.import.iter().map(|line| format!("{log}: {line}")));
         self.warnings.extend(found.warnings.iter().map(|line| format!("{log}: {line}")));
     }
 
-    /// What a robot in the paper's office records on one day.
+    /// Generates the recording of a robot in the paper's office on one day.
     pub fn synthetic(driven: Driven, seed: u64) -> Self {
         let mut rng = stream(seed, 0);
         let office = Office::draw(&mut rng);

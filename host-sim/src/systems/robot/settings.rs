@@ -1,4 +1,4 @@
-//! How a tag is tracked: what can be set, and what it means.
+//! The settings of the tracking of a tag.
 
 pub(super) mod firmware;
 
@@ -11,14 +11,14 @@ use super::simulate::scenario::ANCHORS;
 use crate::Error;
 use crate::system::{Idle, Setting, Settings};
 
-/// Farther above or below the anchors no slider looks for a tag, m.
+/// The range of the height's slider above and below the anchors (m).
 const HEIGHTS: f64 = 5.0;
-/// Nor does anything else, m above or below the floor.
+/// The largest possible height above or below the floor (m).
 const HIGHEST: f64 = 1e4;
-/// The room that ends at the outermost anchors.
+/// The value of the setting for a room bounded by the outermost anchors.
 const WITHIN_ANCHORS: &str = "anchors";
 
-/// What can be set.
+/// The available settings.
 pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
     let own = Tuning::default();
     let [long, short] = own.huber_sigmas.unwrap_or_default();
@@ -109,7 +109,7 @@ pub(super) fn table(recording: Option<&Recording>) -> Vec<Setting> {
     ]
 }
 
-/// Why a setting has no effect as the recording and the others are.
+/// Why a setting has no effect given the recording and the other settings.
 pub(super) fn idle(recording: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
     use TrackerKind::{Aekf, AekfPublished, Default, Ekf, Lsq};
     let tracker = settings.chosen::<TrackerKind>("tracker");
@@ -144,15 +144,15 @@ pub(super) fn idle(recording: Option<&Recording>, settings: &Settings, name: &st
     }
 }
 
-/// The default tracker in the paper's office, without calibration.
+/// The setup of the default tracker in the paper's office, without calibration.
 pub fn of_the_office(scalar: ScalarKind) -> Setup {
     Setup { scalar, ..Setup::new(&ANCHORS, 0.0) }
 }
 
-/// As set, for what was recorded. A height that nobody says is found from the ranges.
+/// The setup for a recording. A height that is not given is found from the ranges.
 ///
 /// # Errors
-/// [`Error::Usage`]: the ranges do not tell it.
+/// [`Error::Usage`] if the ranges do not determine the height.
 pub fn of_recording(recording: &Recording, settings: &Settings) -> Result<Setup, Error> {
     let has_wheels = recording.parts.iter().any(Part::has_wheels);
     let setup = of(settings, &recording.anchors, recording.biases.as_deref());
@@ -164,7 +164,7 @@ pub fn of_recording(recording: &Recording, settings: &Settings) -> Result<Setup,
     Ok(setup.at(found))
 }
 
-/// What is known of the tag's height. One that the ranges do not tell is the tracker's to say.
+/// The knowledge of the tag's height. If the ranges do not determine it, the tracker reports that.
 pub(super) fn known_height(recording: &Recording, settings: &Settings) -> KnownHeight {
     if recording.heights == Heights::Read {
         return KnownHeight::Varying;
@@ -179,8 +179,7 @@ pub(super) fn known_height(recording: &Recording, settings: &Settings) -> KnownH
     }
 }
 
-/// As set, for anchors and what they measure too long by (m), if that is known. A height that is not set is the anchors'
-/// mean height.
+/// The setup for anchors and their biases (m), if known. A height that is not set is the anchors' mean height.
 pub fn of(settings: &Settings, anchors: &Anchors, biases: Option<&[f64]>) -> Setup {
     let room = settings.text("room").and_then(|text| match text.as_str() {
         WITHIN_ANCHORS => Some(anchors.rectangle()),
@@ -216,7 +215,7 @@ fn check_room(text: &str) -> Result<(), String> {
     if text == WITHIN_ANCHORS { Ok(()) } else { parse_room(text).map(drop) }
 }
 
-/// Reads `X0,Y0,X1,Y1`, two opposite corners.
+/// Parses `X0,Y0,X1,Y1`, two opposite corners.
 fn parse_room(text: &str) -> Result<[f64; 4], String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|field| field.trim().parse()).collect();
     let corners = numbers.ok().and_then(|numbers| <[f64; 4]>::try_from(numbers).ok());

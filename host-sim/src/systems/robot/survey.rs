@@ -1,4 +1,4 @@
-//! `host-sim survey robot`: where anchors are, from the ranges between them.
+//! `host-sim survey robot`: determines the positions of anchors from the ranges between them.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ use crate::system::{Calibration, System};
 use crate::table::{self, Log};
 use crate::{Error, output};
 
-/// The command.
+/// The command for the survey.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Survey;
 
@@ -85,7 +85,7 @@ impl Options {
         output::show(&report, self.json)
     }
 
-    /// The anchors' names in the order in which they come, and the ranges between them.
+    /// The names of the anchors in the order of their first occurrence, and the ranges between them.
     fn read(&self) -> Result<(Vec<String>, Vec<Pair>), Error> {
         let (mut names, mut ranges) = (Vec::<String>::new(), Vec::new());
         let options = Reading::default();
@@ -112,7 +112,7 @@ impl Options {
     }
 }
 
-/// What is wrong, by the anchors' names.
+/// The error message, with the names of the anchors.
 fn named(error: &survey::Unplaced, names: &[String]) -> String {
     match error {
         survey::Unplaced::Loose(anchors) => {
@@ -127,7 +127,7 @@ fn named(error: &survey::Unplaced, names: &[String]) -> String {
     }
 }
 
-/// Where an anchor is, m.
+/// The estimated position of an anchor (m).
 #[derive(Debug, Clone, Serialize)]
 struct Place {
     anchor: String,
@@ -135,15 +135,15 @@ struct Place {
     sigmas_m: [f64; 3],
 }
 
-/// What the command prints.
+/// The report that the command prints.
 #[derive(Debug, Clone, Serialize)]
 struct Report {
     system: &'static str,
     anchors: Vec<Place>,
     range_sigma_m: Option<f64>,
-    /// Pairs that do not fit, and by what they are too long, m.
+    /// The pairs that do not fit, and the excess of their ranges (m).
     left_out: Vec<(String, f64)>,
-    /// Anchors that may as well stand elsewhere.
+    /// The anchors with more than one possible position.
     ambiguous: Vec<String>,
 }
 

@@ -50,7 +50,7 @@ fn every_synthetic_recording_opens_with_the_same_figures() {
 #[test]
 fn every_setting_changes_the_plan() {
     let [crowded, line] = ["crowded-round", "line"].map(open);
-    // As text: gaps are NaN, which equals nothing.
+    // Compared as text: gaps are NaN, which is not equal to itself.
     let of =
         |opened: &dyn Opened, sent: &Value| format!("{:?}", figure(&answer(opened, sent), "plan"));
     let plan = |sent: &Value| of(&*crowded, sent);
@@ -78,7 +78,7 @@ fn every_setting_changes_the_plan() {
             settings::table(None).iter().map(|it| it.name).filter(|it| sent.get(it).is_some()),
         );
     }
-    // A smoother refuses people who are in the way for long.
+    // The smoother refuses recordings with people in the way for long.
     let smooth = json!({ "smooth": true });
     assert_ne!(of(&*line, &json!({})), of(&*line, &smooth));
     assert!(answer(&*crowded, &smooth).warnings[0].starts_with("not smoothed: "));
@@ -125,7 +125,7 @@ fn a_gate_leaves_out_what_a_wide_one_takes() {
     assert!(left_out(json!({ "gate": 2.0 })) > left_out(json!({})));
 }
 
-/// How many points of a figure are seen in all series whose name an anchor's begins.
+/// The number of points in all series of a figure that have the name of an anchor.
 fn count(figure: &Figure, anchor: &str) -> usize {
     let series = figure.series.iter().filter(|series| series.name == anchor);
     series.flat_map(|series| &series.y).filter(|y| y.is_finite()).count()
@@ -139,7 +139,7 @@ fn each_anchors_ranges_are_told_apart_by_every_tracker() {
         for anchor in ["A1", "A2", "A3", "A4"] {
             let ranges = count(figure(&answer, "ranges"), anchor);
             assert!(ranges > 100, "{tracker} {anchor}: {ranges}");
-            // A first position is made of ranges that are not weighed.
+            // The first position is computed from ranges that are not weighed.
             let residuals = count(figure(&answer, "residuals"), anchor);
             assert!(residuals + 10 > ranges, "{tracker} {anchor}: {residuals} of {ranges}");
             assert_eq!(count(figure(&answer, "nis"), anchor) > 100, is_weighed, "{tracker}");
@@ -157,7 +157,7 @@ fn the_share_that_was_left_out_is_of_the_last_ten_seconds() {
     let figure = figure(&answer, "rejections");
     let most = figure.series.iter().flat_map(|it| &it.y).fold(0.0, |a: f64, b| a.max(*b));
     assert!((20.0..=100.0).contains(&most), "{most} %");
-    // Somebody before each anchor in turn, and nobody in the end.
+    // There is a person in front of each anchor in turn, and none at the end.
     for series in &figure.series {
         let least = series.y.iter().skip(100).fold(100.0, |a: f64, b| a.min(*b));
         assert!(least < 5.0, "{}: {least} %", series.name);
@@ -175,7 +175,7 @@ fn the_path_knows_its_uncertainty_and_lies_over_the_dilution() {
         }
         let dilution = figure(&answer, "dilution");
         assert!(dilution.series.iter().any(|it| it.name.starts_with("HDOP 1")), "{tracker}");
-        // Four anchors in the corners of a room.
+        // The four anchors are in the corners of a room.
         let hdop = figure(&answer, "hdop");
         let used = hdop.series.last().unwrap().y.iter().filter(|y| y.is_finite());
         assert!(used.clone().count() > 10, "{tracker}");

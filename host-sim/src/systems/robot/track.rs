@@ -1,46 +1,46 @@
-//! Tracks a recording, part by part.
+//! Tracking of a recording, part by part.
 
 use kestirim_replay::robot::{self, Epoch, Follow, Setup, Smoothed, Trace, Tracked, Unsmoothed};
 
 use super::recording::Recording;
 use crate::Error;
 
-/// What helps if the ranges do not tell the height.
+/// The remedy if the ranges do not determine the height.
 const MISSING: &str = "expected --height, metres above the floor or a file (or --dim 3)";
 
-/// What the tracker made of every part of a recording, and the smoother of all, if it was asked for.
+/// The tracker's results for every part of a recording, and those of the smoother over all, if requested.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Tracks {
-    /// The tracker's, part by part.
+    /// The traces of the tracker, part by part.
     pub traces: Vec<Trace>,
-    /// The smoother's.
+    /// The result of the smoother, if requested.
     pub smoothed: Option<Result<Smoothed, Unsmoothed>>,
 }
 
 impl Tracks {
-    /// What the smoother found, if it was asked for and found anything.
+    /// The smoothed track, if it was requested and the smoother succeeded.
     pub fn smoothed(&self) -> Option<&Smoothed> {
         self.smoothed.as_ref()?.as_ref().ok()
     }
 
-    /// Tracked, and smoothed, too.
+    /// Tracks and smooths a recording.
     ///
     /// # Errors
-    /// As [`track`].
+    /// Those of [`track`].
     pub fn smoothed_too(recording: &Recording, setup: &Setup) -> Result<Self, Error> {
         let traces = track(recording, setup)?;
         let smoothed = Some(smooth(recording, setup, &traces));
         Ok(Self { traces, smoothed })
     }
 
-    /// What the smoother found as a tracker would tell it.
+    /// The smoothed epochs in the form of a tracker's traces.
     pub fn smoothed_traces(&self) -> Option<Vec<Trace>> {
         let parts = self.smoothed()?.parts.iter();
         let of_part = |epochs: &Vec<Epoch>| Trace { epochs: epochs.clone(), ..Trace::default() };
         Some(parts.map(of_part).collect())
     }
 
-    /// The best that is known of each part: smoothed, or else as tracked.
+    /// The best epochs of each part: smoothed, or else as tracked.
     pub fn best(&self) -> Vec<&[Epoch]> {
         match self.smoothed() {
             Some(smoothed) => smoothed.parts.iter().map(Vec::as_slice).collect(),
@@ -49,7 +49,7 @@ impl Tracks {
     }
 }
 
-/// Smooths what was tracked.
+/// Smooths the traces of a recording.
 fn smooth(recording: &Recording, setup: &Setup, traces: &[Trace]) -> Result<Smoothed, Unsmoothed> {
     let parts = recording.parts.iter().zip(traces);
     let parts: Vec<_> =
@@ -57,15 +57,15 @@ fn smooth(recording: &Recording, setup: &Setup, traces: &[Trace]) -> Result<Smoo
     robot::smooth(setup, &parts, recording.is_static())
 }
 
-/// Tracks every part of a recording by itself, with a tracker that is built for it.
+/// Tracks every part of a recording separately, each with a new tracker.
 ///
 /// # Errors
-/// [`Error::Usage`] if the anchors will not do.
+/// [`Error::Usage`] if the anchors are unsuitable.
 pub fn track(recording: &Recording, setup: &Setup) -> Result<Vec<Trace>, Error> {
     track_by(recording, setup, |_, setup| robot::build(setup))
 }
 
-/// The same with trackers of one's own, each built for a part, counted from 0.
+/// Tracks every part of a recording with a tracker from `build`, which is given the index of the part.
 ///
 /// # Errors
 /// Those of `build`.
@@ -82,7 +82,7 @@ pub fn track_by(
     parts.collect::<Result<_, _>>().map_err(refused)
 }
 
-/// A tracker that cannot be made, or a height that is missing.
+/// The error for a tracker that cannot be built, or a missing height.
 pub(super) fn refused(error: robot::Error) -> Error {
     Error::Usage(match error {
         robot::Error::HeightUnknown | robot::Error::HeightVague { .. } => {

@@ -1,4 +1,4 @@
-//! What came of a flight.
+//! The results of a flight.
 
 pub mod accuracy;
 pub mod states;
@@ -17,54 +17,54 @@ use crate::metrics::rms;
 use crate::system::{Account, Health, Reason, System, Table};
 use crate::table::Found;
 
-/// What a replay prints. Units rad, rad/s, m/s, rad.
+/// The report that a replay prints, in rad, rad/s, m/s and rad.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Report {
     /// Always `uav`.
     system: &'static str,
-    /// Which estimator.
+    /// The estimator.
     estimator: EstimatorKind,
-    /// Lines of the log.
+    /// The number of lines of the log.
     samples: usize,
-    /// The usual time between them, s.
+    /// The usual time between lines (s).
     interval_s: f64,
-    /// How many times lines are missing.
+    /// The number of gaps in the log.
     gaps: usize,
-    /// Empty fields.
+    /// The number of empty fields.
     missing: usize,
-    /// What measurements said beyond what was expected.
+    /// The innovations of each output.
     innovations: Vec<Residual>,
     /// α, q, V, θ after the last line.
     estimate: [f64; 4],
-    /// What was estimated beside the four states, at the end: value and standard deviation, in units of the SI.
+    /// The further estimated states at the end: value and standard deviation, in SI units.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     beside: BTreeMap<String, [f64; 2]>,
-    /// Standard deviations of the gusts along and across that the innovations support most, m/s.
+    /// The standard deviations of the gusts along and across that the innovations support most (m/s).
     #[serde(skip_serializing_if = "Option::is_none")]
     gust: Option<[f64; 2]>,
-    /// How the log was understood.
+    /// The conclusions about the format of the log.
     import: Vec<String>,
-    /// What a reader should know.
+    /// Warnings for the user.
     warnings: Vec<String>,
-    /// How far from the truth, if it is known.
+    /// The accuracy, if the truth is known.
     accuracy: Option<Accuracy>,
 }
 
-/// Of one output.
+/// Statistics of the innovations of one output.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 struct Residual {
-    /// Its column.
+    /// The column of the output.
     output: String,
-    /// How many times it was measured.
+    /// The number of measurements.
     measured: usize,
-    /// Root mean square of measured less expected.
+    /// The root mean square innovation (measured minus expected).
     rms: f64,
-    /// How many times it contradicted the estimate and was left out.
+    /// The number of measurements that contradicted the estimate and were rejected.
     rejected: u32,
 }
 
 impl Residual {
-    /// What a reader should know.
+    /// The warning about rejected measurements, if there are many.
     fn warning(&self) -> Option<String> {
         let share = f64::from(self.rejected) / self.measured.max(1) as f64;
         (share > REJECTED).then(|| {
@@ -78,10 +78,10 @@ impl Residual {
     }
 }
 
-/// Share of an output's measurements beyond which it is told that they were left out.
+/// The share of an output's measurements from which on their rejection is reported.
 const REJECTED: f64 = 0.1;
 
-/// What came of a flight by this estimator.
+/// Evaluates a flight tracked by this estimator.
 pub(super) fn account(
     recording: &Recording,
     estimator: EstimatorKind,
@@ -173,8 +173,8 @@ impl Report {
     }
 }
 
-/// Time, states and, of a filter that knows them, their standard deviations in every line. What contradicts the model in a log
-/// does so in each.
+/// The table of time, states and, for a filter, their standard deviations on every line. Contradictions between model
+/// and log apply to every row.
 pub(super) fn table(recording: &Recording, Track { flight, followed, .. }: &Track) -> Table {
     let row = |estimate: &Estimate| {
         let state = flight.absolute(estimate);

@@ -1,4 +1,4 @@
-//! What a flight looks like: both estimators beside each other, and what their poles and Q/R cost.
+//! Figures of a flight: both estimators beside each other, and the effect of their poles and Q/R.
 
 mod innovations;
 mod modes;
@@ -23,15 +23,15 @@ use crate::Error;
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::system::{Answer, Settings};
 
-/// An estimator's name and colour.
+/// The name and colour of the Kalman filter.
 const KALMAN: (&str, Colour) = ("Kalman", Colour::Ours);
-/// The other's.
+/// The name and colour of the Luenberger observer.
 const LUENBERGER: (&str, Colour) = ("Luenberger", Colour::Published);
 
-/// What is known of a state, or estimated: times and values.
+/// Times and values of a state, known or estimated.
 type Line = (Vec<f64>, Vec<f64>);
 
-/// The page's figures, and facts of the other estimator, which is at its defaults.
+/// Adds the page's figures, and facts about the other estimator with its default settings.
 pub(super) fn draw(
     recording: &Recording,
     settings: &Settings,
@@ -87,7 +87,7 @@ pub(super) fn draw(
     Ok(())
 }
 
-/// Since the log's first line.
+/// The time since the log's first line (s).
 fn seconds(track: &Track, t_us: i64) -> f64 {
     let begin = track.flight.log.samples.first().map_or(0, |sample| sample.t_us);
     (t_us - begin) as f64 / 1e6
@@ -97,10 +97,10 @@ fn line((x, y): Line, (name, colour): (&str, Colour)) -> Series {
     Series::line(name, x, y).coloured(colour)
 }
 
-/// A state as it was measured, as it was, and as the observer and the filter estimate it.
+/// A state as measured, as it truly was, and as the observer and the filter estimate it.
 fn drawn(state: usize, ours: &Track, estimators: [Option<&Track>; 2]) -> Figure {
     let flight = &ours.flight;
-    // An output that is a state by itself; what a file's C mixes has no axis here.
+    // Only an output that is a single state is drawn; a combination of states in a file's C has no axis here.
     let column = flight.log.outputs.iter().position(|&output| {
         let row = flight.model.outputs[output].1;
         row[state] == 1.0 && row.iter().filter(|part| **part != 0.0).count() == 1
@@ -131,7 +131,7 @@ fn drawn(state: usize, ours: &Track, estimators: [Option<&Track>; 2]) -> Figure 
         .with(line(kalman, KALMAN))
 }
 
-/// Errors of both, of each time the worst state's in its band.
+/// The errors of both estimators: at each time that of the worst state, relative to its band.
 fn error(ours: &Track, estimators: [Option<&Track>; 2]) -> Figure {
     let end = ours.flight.log.samples.last().map_or(0.0, |sample| seconds(ours, sample.t_us));
     let band = Series::path("caught", [[0.0, 1.0], [end, 1.0]]);
@@ -154,10 +154,10 @@ fn error(ours: &Track, estimators: [Option<&Track>; 2]) -> Figure {
         .with(line(kalman, KALMAN))
 }
 
-/// The worst of some errors in bands.
+/// The largest error relative to its band.
 fn in_bands(errors: [Option<f64>; 4]) -> f64 {
     let all = errors.into_iter().zip(BANDS);
     let worst = all.filter_map(|(error, band)| error.map(|error| error.abs() / band));
-    // Zero has no place on a logarithmic axis.
+    // Zero cannot be shown on a logarithmic axis.
     worst.fold(1e-9, f64::max)
 }

@@ -1,4 +1,4 @@
-//! `host-sim identify uav`: the linear model of an aircraft, from logs of its manoeuvres.
+//! `host-sim identify uav`: determines the linear model of an aircraft from logs of its manoeuvres.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -14,19 +14,19 @@ use crate::system::{Calibration, Reading, System};
 use crate::table::Found;
 use crate::{Error, output};
 
-/// What is looked for in a log.
+/// The columns used if a log has them.
 const COLUMNS: [&str; 9] = ["alpha", "q", "V", "theta", "az", "ax", "qbar", "climb", "V_ground"];
-/// What coefficients take, with its help.
+/// The options needed for coefficients, with their help.
 const SIZE: [(&str, &str); 4] = [
     ("mass", "Mass, kg; with the other three, coefficients are told as well"),
     ("inertia", "Moment of inertia about the wings' axis, kg m²"),
     ("area", "Wing area, m²"),
     ("chord", "Mean chord, m"),
 ];
-/// Of the standard atmosphere at sea level, kg/m³.
+/// The default air density: the standard atmosphere at sea level, kg/m³.
 const DENSITY: &str = "1.225";
 
-/// The command.
+/// The command for the identification.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Identify;
 
@@ -96,10 +96,10 @@ impl Calibration for Identify {
     }
 }
 
-/// A flight as the identification takes it.
+/// Reads a flight for the identification.
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn flight(path: &Path) -> Result<Flight, Error> {
     Ok(read(path, &Reading::default())?.0)
 }
@@ -111,7 +111,7 @@ fn airplane(matches: &ArgMatches) -> Option<Airplane> {
     Some(Airplane { mass, inertia, area, chord, density: number("density")? })
 }
 
-/// Which density of the air counts, where more than one could.
+/// Warns about the choice of the air density, where there is more than one possibility.
 fn density(
     matches: &ArgMatches,
     airplane: Option<&Airplane>,
@@ -151,7 +151,7 @@ fn read(path: &Path, reading: &Reading) -> Result<(Flight, Found), Error> {
     Ok((flight, found))
 }
 
-/// What the command prints.
+/// The report that the command prints.
 #[derive(Debug, Clone, Serialize)]
 struct Report {
     system: &'static str,

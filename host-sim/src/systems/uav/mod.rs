@@ -1,8 +1,8 @@
-//! The longitudinal motion of a fixed-wing aircraft, seen by Luenberger observers and Kalman filters.
+//! The longitudinal motion of a fixed-wing aircraft, estimated by Luenberger observers and Kalman filters.
 //!
-//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiments track what [`simulate`] flies.
+//! [`recording`] → [`track`] → [`account`]; the [`paper`]'s experiments track the flights that [`simulate`] generates.
 //!
-//! States α, q, V, θ and inputs δe, δt are deviations from the flight that the model was linearised at; rad,
+//! The states α, q, V, θ and inputs δe, δt are deviations from the flight about which the model was linearised; rad,
 //! rad/s, m/s.
 
 #![expect(
@@ -39,7 +39,7 @@ use crate::system::{
     Plan, RunOptions, Setting, Settings, System, Table,
 };
 
-/// The system.
+/// The UAV system.
 #[derive(Debug, Clone, Copy)]
 pub struct Uav;
 

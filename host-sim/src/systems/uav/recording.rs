@@ -1,4 +1,4 @@
-//! Where flights come from.
+//! Recorded and synthetic flights.
 
 pub mod log;
 pub mod model;
@@ -15,22 +15,22 @@ use crate::table::Found;
 /// A flight.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Recording {
-    /// From files.
+    /// A flight from files.
     Logged(Box<Logged>),
-    /// Simulated as the settings say, with these inputs.
+    /// A flight simulated according to the settings, with these inputs.
     Synthetic(Inputs),
 }
 
-/// What was read.
+/// The contents of the files of a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Logged {
-    /// The file of the log.
+    /// The path of the log.
     pub path: PathBuf,
-    /// From a file; none is a known aircraft's, by choice.
+    /// The model from a file; `None` for a known aircraft, selected in the settings.
     pub model: Option<Model>,
-    /// As in its file.
+    /// The log, in its own coordinates.
     pub log: Log,
-    /// What was really flown.
+    /// The true states, if known.
     pub truth: Option<Truth>,
     /// How the log was read.
     pub found: Found,
@@ -40,7 +40,7 @@ impl Recording {
     /// Reads all files.
     ///
     /// # Errors
-    /// The file, the line, and what was expected there.
+    /// An error that names the file, the line, and what was expected there.
     pub fn read(files: &Files) -> Result<Self, Error> {
         let path = files.required("log")?.to_path_buf();
         let model = files.one("model").map(model::read).transpose()?;
@@ -65,7 +65,7 @@ impl Recording {
         }
     }
 
-    /// A complaint that no estimator follows it.
+    /// The error that no estimator can follow the recording.
     pub(super) fn refused(&self, problem: String) -> Error {
         match self {
             Self::Logged(logged) => Error::File { path: logged.path.clone(), problem },

@@ -1,4 +1,4 @@
-//! How a flight is followed: what can be set, and what it means.
+//! The settings of the estimation of a flight.
 
 pub(super) mod firmware;
 pub mod text;
@@ -13,18 +13,18 @@ use super::simulate::plant::Outputs;
 use super::simulate::scenario::{INTERVAL_S, Inputs, NEAR, START};
 use crate::system::{Idle, ScalarKind, Setting, Settings};
 
-/// What belongs to an estimator.
+/// The settings that apply to a single estimator.
 const OF_THE_FILTER: [&str; 4] = ["input-noise", "output-noise", "ratio", "gain"];
 const OF_THE_OBSERVER: [&str; 2] = ["poles", "faster"];
-/// What belongs to a synthetic flight.
+/// The settings that apply to a synthetic flight only.
 const SYNTHETIC: [&str; 7] =
     ["outputs", "gain", "noise", "sigma", "wrong-start", "duration", "seed"];
-/// What `--absolute` does.
+/// The requirement of `--absolute`, in words.
 pub(super) const NEEDS_TRIM: &str = "needs a model with a trim: P1, or a file that has one";
-/// Standard deviation that a filter reckons with where there is no noise.
+/// The standard deviation that a filter assumes if there is no noise.
 const LEAST_SIGMA: f64 = 1e-3;
 
-/// What can be set.
+/// The available settings.
 pub(super) fn table() -> Vec<Setting> {
     let mut all = vec![
         Setting::one_of("estimator", "Which estimator", &EstimatorKind::default()),
@@ -89,7 +89,7 @@ pub(super) fn table() -> Vec<Setting> {
     all
 }
 
-/// Why a setting has no effect as the recording and the others are.
+/// Why a setting has no effect given the recording and the other settings.
 pub(super) fn idle(recording: Option<&Recording>, settings: &Settings, name: &str) -> Option<Idle> {
     let estimator = settings.chosen("estimator");
     let noise = settings.chosen("noise");
@@ -120,7 +120,7 @@ pub(super) fn idle(recording: Option<&Recording>, settings: &Settings, name: &st
         })
 }
 
-/// Why a known aircraft cannot be counted from its trim.
+/// Why the states of a known aircraft cannot be counted from its trim.
 fn untrimmed(settings: &Settings) -> Option<Idle> {
     (settings.chosen::<Plant>("model") != Plant::P1).then(|| Idle::foreign(NEEDS_TRIM))
 }
@@ -147,7 +147,7 @@ enum NoiseKind {
     None,
 }
 
-/// As set.
+/// The options of the estimator.
 pub fn options(settings: &Settings) -> Options {
     let list = |name| settings.text(name);
     let poles = list("poles").and_then(|poles| text::poles(&poles).ok());
@@ -161,21 +161,21 @@ pub fn options(settings: &Settings) -> Options {
     }
 }
 
-/// A synthetic flight as set.
+/// A synthetic flight and its filter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Simulation {
-    /// What is flown.
+    /// The flight to simulate.
     pub flight: Flight,
-    /// What the filter takes the noise for, at its own Q/R.
+    /// The noise that the filter assumes, before its own Q/R is applied.
     pub assumed: Noise,
-    /// Gain of the filter.
+    /// The kind of gain of the filter.
     pub gain: GainKind,
-    /// Of the noise.
+    /// The seed of the noise.
     pub seed: u64,
 }
 
 impl Simulation {
-    /// As set.
+    /// The simulation according to the settings.
     pub fn of(settings: &Settings, inputs: Inputs) -> Self {
         let equal = |sigma: f64| Noise { name: "equal", inputs: [sigma; 2], outputs: [sigma; 4] };
         let (noise, usual) = match settings.chosen("noise") {
@@ -205,7 +205,7 @@ impl Simulation {
         Self { flight, assumed, gain, seed }
     }
 
-    /// An estimator of it.
+    /// The kind of estimator that the options select.
     pub fn kind(&self, options: &Options) -> Kind {
         let believed = Noise { inputs: options.weighted(self.assumed.inputs), ..self.assumed };
         match (options.estimator, self.gain) {

@@ -187,7 +187,7 @@ fn a_log_is_followed_and_refused_as_on_the_command_line() {
     assert_eq!(values(&first, "alpha", "Kalman").len(), 200);
     let other = answer(&*opened, &json!({ "model": "P3", "scalar": "f32" }));
     assert_ne!(values(&first, "alpha", "Luenberger"), values(&other, "alpha", "Luenberger"));
-    // What no aircraft flew.
+    // A flight that no aircraft can have flown.
     assert!(
         other.warnings.iter().all(|it| it.contains("contradicts the model")),
         "{:?}",

@@ -1,4 +1,4 @@
-//! Feeds a flight to an estimator.
+//! Runs an estimator over a flight.
 
 use kestirim_replay::uav::{
     self, Deviations, Estimate, EstimatorKind, Followed, Log, Model, Plant, Sample,
@@ -16,30 +16,30 @@ use super::simulate::scenario::INTERVAL_S;
 use crate::Error;
 use crate::system::{Health, Settings};
 
-/// What an estimator made of a flight.
+/// The estimator's results for a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
     /// The flight as the estimator saw it.
     pub flight: Deviations,
-    /// What came of it.
+    /// The estimates and innovations.
     pub followed: Followed,
-    /// What a reader should know of the log.
+    /// Warnings about the log.
     pub warnings: Vec<String>,
 }
 
 impl Track {
-    /// By the estimator that is set.
+    /// Tracks a flight with the estimator that is set.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why there is no track.
     pub fn of(recording: &Recording, settings: &Settings) -> Result<Self, Error> {
         Self::by(recording, settings, settings.chosen("estimator"))
     }
 
-    /// By this estimator.
+    /// Tracks a flight with a given estimator.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why there is no track.
     pub fn by(
         recording: &Recording,
         settings: &Settings,
@@ -91,7 +91,7 @@ fn warnings(logged: &Logged, settings: &Settings, flight: &Deviations) -> Vec<St
     told.into_iter().flatten().collect()
 }
 
-/// What cannot be estimated as it is set.
+/// The error for settings that the estimator does not allow.
 pub(super) fn refused(error: uav::Error) -> Error {
     Error::Usage(match error {
         uav::Error::NoTrim => format!("--absolute {NEEDS_TRIM}"),
@@ -99,10 +99,11 @@ pub(super) fn refused(error: uav::Error) -> Error {
     })
 }
 
-/// Innovations of a simulated flight in standard deviations, as its Kalman filter expects them; none of an observer.
+/// The innovations of a simulated flight in standard deviations, as its Kalman filter expects them; empty for an
+/// observer.
 ///
-/// Those of a time together have the covariance C P Cᵀ + R; they are made independent of each other by its Cholesky factor, as if they
-/// were taken in one by one.
+/// The innovations at one time have the joint covariance C P Cᵀ + R; its Cholesky factor decorrelates them, as if they
+/// were processed one by one.
 fn normalised<const P: usize>(
     c: &SMatrix<f64, P, 4>,
     flight: &Flight,
@@ -134,7 +135,7 @@ fn normalised<const P: usize>(
     Some(normalised)
 }
 
-/// A simulated flight as a log would have it.
+/// A simulated flight in the form of a log.
 fn simulated(flight: &Flight, moments: &[Moment]) -> Track {
     let outputs: Vec<usize> = (4 - flight.outputs.count()..4).collect();
     let timed = || (0_i64..).map(|number| number * (INTERVAL_S * 1e6) as i64).zip(moments);

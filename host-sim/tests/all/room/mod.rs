@@ -7,12 +7,12 @@ use serde_json::Value;
 
 use crate::program::{Desk, host_sim, json};
 
-/// Two anchors high, two low, the tag one metre up.
+/// The anchors: two are high and two low, with the tag at one metre.
 pub(crate) const ANCHORS: [[f64; 3]; 4] =
     [[0.0, 0.0, 2.0], [8.0, 0.0, 0.3], [8.0, 6.0, 2.0], [0.0, 6.0, 0.3]];
 pub(crate) const HEIGHT: f64 = 1.0;
 
-/// A recording as files on a desk: a tag on an ellipse for 40 s, ten epochs a second.
+/// A recording as files on a desk: a tag on an ellipse for 40 s, with ten epochs per second.
 pub(crate) struct Room {
     pub(crate) desk: Desk,
     pub(crate) anchors: String,
@@ -29,7 +29,7 @@ pub(crate) fn distance(anchor: [f64; 3], [x, y]: [f64; 2]) -> f64 {
 }
 
 impl Room {
-    /// `spoil` may change each line of the log: time, anchor and range.
+    /// Writes the files; `spoil` may change each line of the log, given its time, anchor and range.
     pub(crate) fn new(
         biases: [f64; 4],
         spoil: impl Fn(usize, f64, usize, f64) -> Vec<String>,
@@ -69,7 +69,7 @@ impl Room {
         [&start, more].concat()
     }
 
-    /// The report of a replay against the truth.
+    /// The report of a replay compared with the truth.
     pub(crate) fn report(&self, more: &[&str]) -> Value {
         let with_truth = ["--truth", &self.truth, "--json"];
         json(&host_sim(&self.replay(&[&with_truth, more].concat())))

@@ -1,7 +1,7 @@
 //! A synthetic receiver under a synthetic sky, as files.
 //!
-//! Circular orbits, no ionosphere, no noise but the rounding of the formats: observations are what the model
-//! expects, so that positions are right to a centimetre at once where phases are.
+//! Circular orbits, no ionosphere, and no noise but the rounding of the formats: observations are as the model
+//! predicts, so that positions are accurate to a centimetre from the first epoch with phases.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -10,20 +10,20 @@ use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_gnss_ppp::{Carriers, GpsTime, Receiver, SatelliteState, Site, WAVELENGTH};
 use nalgebra::{Rotation3, Vector3};
 
-/// 25 June 2020.
+/// The modified Julian date of 25 June 2020.
 const DAY: i32 = 59_025;
 const LEAP_SECONDS: f64 = 18.0;
 const EARTH_RATE: f64 = 7.292_115e-5;
 const RADIUS: f64 = 26_560e3;
 const PERIOD: f64 = 43_077.0;
-/// Between epochs, s.
+/// The interval between epochs (s).
 pub(crate) const INTERVAL: f64 = 30.0;
-/// The first epoch, s after midnight.
+/// The time of the first epoch (s after midnight).
 pub(crate) const BEGIN: f64 = 7200.0;
-/// Where the marker is.
+/// The position of the marker (ECEF, m).
 pub(crate) const MARKER: [f64; 3] = [3_582_104.76, 532_590.18, 5_232_755.15];
 
-/// Centre of mass of a satellite of six planes with five places each, and its velocity.
+/// The position of the centre of mass of a satellite in one of six planes with five places each, and its velocity.
 fn orbit(prn: u8, second: f64) -> (Vector3<f64>, Vector3<f64>) {
     let (plane, place) = (f64::from(prn % 6), f64::from(prn / 6));
     let rate = TAU / PERIOD;
@@ -47,7 +47,7 @@ fn clock_time(second: f64) -> (u32, u32, f64) {
     (whole / 3600, whole / 60 % 60, second - f64::from(whole / 60 * 60))
 }
 
-/// Orbits and clocks every quarter of an hour from midnight to a time.
+/// An SP3 file with orbits and clocks every quarter of an hour from midnight to a given time.
 pub(crate) fn sp3(until: f64, satellites: &[u8]) -> String {
     let mut text = String::from("#dP2020  6 25  0  0  0.00000000      96 ORBIT IGS14 FIT TEST\n");
     let mut second = 0.0;
@@ -64,12 +64,12 @@ pub(crate) fn sp3(until: f64, satellites: &[u8]) -> String {
     text + "EOF\n"
 }
 
-/// A line of a header: text in 60 columns, and what it is.
+/// A line of a header: the text in 60 columns, followed by its label.
 fn line(text: &str, label: &str) -> String {
     format!("{text:<60}{label:<20}\n")
 }
 
-/// Antennas whose phase centres are their reference points.
+/// An ANTEX file of antennas whose phase centres coincide with their reference points.
 pub(crate) fn antex(satellites: &[u8]) -> String {
     let mut text =
         line("     1.4            M", "ANTEX VERSION / SYST") + &line("", "END OF HEADER");
@@ -90,16 +90,16 @@ pub(crate) fn antex(satellites: &[u8]) -> String {
     text
 }
 
-/// What can be wrong with an observation; nothing of it leaves the satellite out.
+/// A fault of an observation; none omits the satellite.
 #[derive(Clone, Copy)]
 pub(crate) struct Fault {
-    /// Added to both codes, m.
+    /// The offset of both codes (m).
     pub(crate) code: f64,
-    /// Added to both phases, m.
+    /// The offset of both phases (m).
     pub(crate) phase: f64,
-    /// The receiver says that it lost lock.
+    /// Whether the receiver reports a loss of lock.
     pub(crate) lock_lost: bool,
-    /// There is nothing on L2.
+    /// Whether the L2 observations are missing.
     pub(crate) incomplete: bool,
 }
 
@@ -108,7 +108,7 @@ impl Fault {
         Self { code: 0.0, phase: 0.0, lock_lost: false, incomplete: false };
 }
 
-/// Observations of so many epochs; `fault` is asked for each satellite with the epoch's number.
+/// A RINEX file with this number of epochs; `fault` is called for each epoch's number and satellite.
 pub(crate) fn rinex(epochs: u32, fault: impl Fn(u32, u8) -> Option<Fault>) -> String {
     let [x, y, z] = MARKER;
     let mut text = [
@@ -176,7 +176,7 @@ pub(crate) fn rinex(epochs: u32, fault: impl Fn(u32, u8) -> Option<Fault>) -> St
     text
 }
 
-/// Thirty satellites.
+/// The numbers of all thirty satellites.
 pub(crate) fn satellites() -> Vec<u8> {
     (1..=30).collect()
 }

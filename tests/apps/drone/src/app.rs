@@ -1,4 +1,4 @@
-//! What is done with places and levels.
+//! Combines positions and levels into estimates of the user's position.
 
 use embedded_io::{Read, ReadReady, Write};
 use kestirim_air_to_ground::Measurement;
@@ -13,19 +13,19 @@ use crate::lines::Lines;
 use crate::site::{self, FRESH_US, LEVEL, USER};
 use crate::{Error, PARTICLES};
 
-/// What a poll brought.
+/// The result of a poll.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Event {
-    /// The user is here now.
+    /// A new estimate of the user's current position.
     Located(TrackEstimate<f32>),
-    /// The user was heard, but nobody knows where the drone was.
+    /// The user was received, but the position of the drone was unknown.
     NoFix,
-    /// The filter refused a measurement; it has only moved on in time.
+    /// The filter refused a measurement; it has only advanced in time.
     Refused(kestirim_user_locator::Error),
 }
 
-/// A drone that looks for a user.
+/// A drone that locates a user.
 #[derive(Debug)]
 pub struct App<G, B, W> {
     gps: Lines<G>,
@@ -34,7 +34,7 @@ pub struct App<G, B, W> {
     degree: Degree,
     tracker: Tracker<f32, PARTICLES>,
     rng: Xoshiro128PlusPlus,
-    /// East, north and up, m, and when (µs).
+    /// East, north and up, m, and the time of the position (µs).
     place: Option<([f32; 3], u64)>,
     measured_us: Option<u64>,
     accepted: u32,
@@ -48,8 +48,8 @@ where
     B: Read + ReadReady,
     W: Write,
 {
-    /// With a satellite receiver, a radio module, a serial port for telemetry, and a source of randomness
-    /// that seeds the particles.
+    /// Creates the application from a satellite receiver, a radio module, a serial port for telemetry, and a source of
+    /// randomness that seeds the particles.
     ///
     /// # Errors
     /// [`Error::Entropy`] or [`Error::Site`].
@@ -71,11 +71,11 @@ where
         })
     }
 
-    /// Reads what both modules have sent up to the next beacon of the user, and takes that in. `time_us` is
-    /// now (µs since any moment), and never goes back.
+    /// Reads the data of both modules up to the next beacon of the user, and updates the filter. `time_us` is the
+    /// current time (µs since any moment), and must not go back.
     ///
     /// # Errors
-    /// A port's.
+    /// If a port fails.
     pub fn poll(&mut self, time_us: u64) -> Result<Option<Event>, Error> {
         let degree = self.degree;
         let place = |line: &str| degree.place(line);
@@ -110,7 +110,7 @@ where
         self.accepted = self.accepted.saturating_add(1);
         let estimate = self.tracker.estimate();
         let [x, y] = estimate.place;
-        // The spread is that of both components.
+        // The spread is that of both components together.
         let sigma = Some(estimate.spread * core::f32::consts::FRAC_1_SQRT_2);
         let position = Position { time_us, position: [x, y, 0.0], sigma };
         self.telemetry.send(position).map_err(|_| Error::Telemetry)?;

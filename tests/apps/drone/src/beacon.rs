@@ -1,21 +1,21 @@
-//! The user's beacon, as a `LoRa` module of the series REYAX RYLR tells it:
+//! The user's beacon, as reported by a `LoRa` module of the series REYAX RYLR:
 //! `+RCV=<address>,<length>,<data>,<RSSI>,<SNR>`.
 
 /// A frame that the module received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Beacon {
-    /// Who sent it.
+    /// The address of the sender.
     pub address: u16,
-    /// How strongly it came in, dBm.
+    /// The received level, dBm.
     pub level: i16,
 }
 
 impl Beacon {
-    /// The frame that a line tells of, if it does.
+    /// Parses the line with which the module reports a frame; `None` for any other line.
     pub fn read(line: &str) -> Option<Self> {
         let (address, rest) = line.strip_prefix("+RCV=")?.split_once(',')?;
         let (length, rest) = rest.split_once(',')?;
-        // The data may have commas.
+        // The data may contain commas.
         let (level, _) = rest.get(length.parse().ok()?..)?.strip_prefix(',')?.split_once(',')?;
         Some(Self { address: address.parse().ok()?, level: level.parse().ok()? })
     }

@@ -13,7 +13,7 @@ pub enum Error {
     Telemetry,
     /// The source of randomness failed.
     Entropy,
-    /// The site's numbers make no sense.
+    /// The constants of the site are invalid.
     Site(kestirim_user_locator::Error),
 }
 

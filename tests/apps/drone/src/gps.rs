@@ -1,16 +1,16 @@
-//! Places from a satellite receiver: its sentences GGA.
+//! Positions from a satellite receiver: its GGA sentences.
 
 use nmea::ParseResult;
 use nmea::sentences::FixType;
 
 use crate::site::{GROUND, ORIGIN};
 
-/// Metres that a degree of longitude and of latitude have at the origin.
+/// The lengths of a degree of longitude and of latitude at the origin, m.
 #[derive(Clone, Copy, Debug)]
 pub struct Degree([f64; 2]);
 
 impl Degree {
-    /// On the ellipsoid of GPS, to 0.1 m a degree.
+    /// The lengths on the ellipsoid of GPS, to 0.1 m per degree.
     pub fn at_origin() -> Self {
         let latitude = ORIGIN[0].to_radians();
         let cosine = |multiple: f64| libm::cos(multiple * latitude);
@@ -20,7 +20,7 @@ impl Degree {
         ])
     }
 
-    /// East and north of the origin and above the ground, m: from a sentence that tells a place.
+    /// The position east and north of the origin and above the ground, m, from a sentence that contains one.
     pub fn place(&self, sentence: &str) -> Option<[f32; 3]> {
         let Ok(ParseResult::GGA(fix)) = nmea::parse_str(sentence) else { return None };
         if matches!(fix.fix_type?, FixType::Invalid | FixType::Estimated | FixType::Simulation) {

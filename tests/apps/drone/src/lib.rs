@@ -1,9 +1,9 @@
-//! A drone that looks for a user in a city, as one would write it: a satellite receiver tells where it is, a
-//! `LoRa` module how strongly the user's beacon came in, a particle filter where the user must be, and frames of
-//! telemetry tell a host.
+//! A drone that locates a user in a city, as an example application: a satellite receiver gives its own position, a
+//! `LoRa` module the received level of the user's beacon, a particle filter estimates the user's position, and
+//! telemetry frames report it to a host.
 //!
-//! Both modules are behind `embedded-io`; the source of randomness is handed in. [`App::poll`] is the loop's
-//! body; [`site`] is what is to be changed.
+//! Both modules are accessed through `embedded-io`; the source of randomness is passed in. [`App::poll`] is the body of
+//! the loop; [`site`] is the part to adapt.
 #![no_std]
 
 mod app;
@@ -18,5 +18,5 @@ pub use beacon::Beacon;
 pub use error::Error;
 pub use gps::Degree;
 
-/// Particles: 5.6 kB, of 32 kB of RAM.
+/// The number of particles: 5.6 kB, of 32 kB of RAM.
 pub const PARTICLES: usize = 200;

@@ -3,10 +3,10 @@
 use embedded_io::{Read, ReadReady};
 use heapless::Vec;
 
-/// The longest line that either module sends, and more.
+/// The capacity for a line, more than the longest line of either module.
 const LONGEST: usize = 300;
 
-/// A port, and the line that is arriving.
+/// A port, and the line being received.
 #[derive(Debug)]
 pub(crate) struct Lines<P> {
     port: P,
@@ -19,7 +19,7 @@ impl<P: Read + ReadReady> Lines<P> {
         Self { port, line: Vec::new(), overlong: false }
     }
 
-    /// Reads what has arrived up to the first line that `read` makes something of; waits for nothing.
+    /// Reads what has arrived, up to the first line that `read` accepts; does not block.
     pub(crate) fn find<T>(
         &mut self,
         read: impl Fn(&str) -> Option<T>,

@@ -1,8 +1,9 @@
-//! A foot's tracker at the end of a serial line, as one would write it: samples of an IMU arrive as frames of telemetry,
-//! footprints and positions go back.
+//! A foot's tracker at the end of a serial line, as an example application: samples of an IMU arrive as telemetry
+//! frames; footprints and positions are sent back.
 //!
-//! [`Node::take`] is the loop's body and knows neither interrupts nor an executor: the program that calls it does. Its
-//! programs are `foot-embassy` (an async task that awaits bytes) and `foot-rtic` (a task that an interrupt wakes).
+//! [`Node::take`] is the body of the loop and is independent of interrupts and executors, which the calling program
+//! handles. The programs are `foot-embassy` (an async task that awaits bytes) and `foot-rtic` (a task woken by an
+//! interrupt).
 #![no_std]
 #![expect(missing_debug_implementations, reason = "a receiver of telemetry has none")]
 
@@ -11,22 +12,22 @@ use kestirim_scalar::Components;
 use kestirim_telemetry::{CAPACITY, Footprint, Health, Imu, Message, Position, Receiver, encode};
 use nalgebra::SVector;
 
-/// A position is sent every so many samples.
+/// The number of samples per transmitted position.
 const SAMPLES_A_POSITION: u32 = 10;
 
-/// Room for the longest frame, bytes.
+/// The length of the longest frame, bytes.
 pub const FRAME: usize = CAPACITY;
 
-/// What is to be sent.
+/// A frame to be sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Answer<'a> {
     /// The frame, delimiters included.
     pub frame: &'a [u8],
-    /// The other side has said farewell, and this answers it.
+    /// Whether this answers the farewell of the other side.
     pub is_last: bool,
 }
 
-/// The tracker, between what arrives and what is sent.
+/// The tracker, between the received samples and the frames to be sent.
 pub struct Node {
     receiver: Receiver,
     tracker: EkfTracker<f32>,
@@ -51,8 +52,8 @@ impl Node {
         }
     }
 
-    /// Takes a byte that arrived; what is to be sent if it completed a sample with which a stride ended or a position is
-    /// due, or the other side's `Health`, its farewell. The frame is written into `buffer`.
+    /// Takes a received byte. Returns the frame to be sent if the byte completed a sample that ended a stride or for
+    /// which a position is due, or the other side's `Health`, its farewell. The frame is written into `buffer`.
     pub fn take<'a>(&mut self, byte: u8, buffer: &'a mut [u8; FRAME]) -> Option<Answer<'a>> {
         let answer = match self.receiver.push(byte)?.message {
             Message::Imu(sample) => self.track(&sample)?,
@@ -62,7 +63,7 @@ impl Node {
         let is_last = matches!(answer, Message::Health(_));
         let sequence = self.sent;
         self.sent = sequence.wrapping_add(1);
-        // A buffer of the capacity holds any frame.
+        // A buffer of this capacity holds any frame.
         let frame = encode(&answer, sequence, buffer).ok()?;
         Some(Answer { frame, is_last })
     }

@@ -1,11 +1,11 @@
-//! Times as files and receivers tell them.
+//! Times in the formats of files and receivers.
 
 use kestirim_gnss_ppp::GpsTime;
 
-/// The modified Julian day with which GPS time begins: 6 January 1980.
+/// The modified Julian day on which GPS time begins: 6 January 1980.
 const FIRST_DAY: i32 = 44_244;
 
-/// The time in six fields: year, month, day, hour, minute and second.
+/// Parses a time of six fields: year, month, day, hour, minute and second.
 pub(crate) fn date<'a>(fields: &mut impl Iterator<Item = &'a str>) -> Option<GpsTime> {
     let mut whole = || fields.next()?.parse::<i32>().ok();
     let (year, month, day, hour, minute) = (whole()?, whole()?, whole()?, whole()?, whole()?);
@@ -22,12 +22,12 @@ pub(crate) fn date<'a>(fields: &mut impl Iterator<Item = &'a str>) -> Option<Gps
     })
 }
 
-/// A week, and the second within it.
+/// The time of a GPS week and the second within it.
 pub(crate) fn week(week: u16, second: f64) -> GpsTime {
     GpsTime::new(FIRST_DAY + 7 * i32::from(week), second)
 }
 
-/// Fliegel and van Flandern (1968), whose divisions round towards zero.
+/// The modified Julian day of a date, after Fliegel and van Flandern (1968), whose divisions round towards zero.
 const fn modified_julian_day(year: i32, month: i32, day: i32) -> i32 {
     let early = (month - 14) / 12;
     1461 * (year + 4800 + early) / 4 + 367 * (month - 2 - 12 * early) / 12

@@ -3,10 +3,10 @@
 use embedded_io::{Read, ReadReady};
 use heapless::Vec;
 
-/// The longest line of both formats, and more.
+/// The capacity for a line, more than the longest line of either format.
 const LONGEST: usize = 128;
 
-/// A port, and the line that is arriving.
+/// A port, and the line being received.
 #[derive(Debug)]
 pub(crate) struct Lines<P> {
     port: P,
@@ -19,7 +19,8 @@ impl<P: Read + ReadReady> Lines<P> {
         Self { port, line: Vec::new(), overlong: false }
     }
 
-    /// Reads what has arrived, and hands over each whole line; waits for nothing. A line that is no text is empty.
+    /// Reads what has arrived, and passes on each complete line; does not block. A line that is not text is passed on
+    /// empty.
     pub(crate) fn each(&mut self, mut read: impl FnMut(&str)) -> Result<(), P::Error> {
         let mut byte = [0];
         while self.port.read_ready()? && self.port.read(&mut byte)? > 0 {

@@ -9,7 +9,7 @@ use nalgebra::SVector;
 use crate::log::Log;
 use crate::{Counts, Error, Imu, SensorError};
 
-/// A position is sent every so many samples, ten times a second.
+/// The number of samples per transmitted position, which makes ten positions a second.
 const SAMPLES_A_POSITION: u32 = 10;
 
 /// The [`Error`] of an application with these peripherals.
@@ -19,30 +19,30 @@ type Failure<I2C, F, P> = Error<
     <P as embedded_io::ErrorType>::Error,
 >;
 
-/// What happened with a sample that somebody may want to know.
+/// A noteworthy event with a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Event {
-    /// The foot has come to stand: where (m, earth: z up, from the start).
+    /// The foot has come to a stand at this position (m, earth frame: z up, from the start).
     Stance([f32; 3]),
-    /// The foot has left a stance that a stride had led to: its horizontal length (m).
+    /// The foot has left a stance that ended a stride: the stride's horizontal length (m).
     Stride(f32),
     /// The tracker refused the sample.
     Refused(Refusal),
 }
 
-/// A walk, when it is over.
+/// The summary of a finished walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Summary {
-    /// Samples that were taken in.
+    /// The number of accepted samples.
     pub accepted: u32,
-    /// Samples that the tracker refused.
+    /// The number of samples that the tracker refused.
     pub rejected: u32,
-    /// Readings that the sensor's driver did not deliver.
+    /// The number of readings that the sensor's driver did not deliver.
     pub failed: u32,
-    /// The horizontal path from stance to stance (m).
+    /// The length of the horizontal path from stance to stance (m).
     pub path: f32,
 }
 
@@ -85,8 +85,8 @@ impl<T: Scalar, I2C: I2c, F: Write, P: Write> App<T, I2C, F, P> {
         })
     }
 
-    /// Takes the sample that the sensor has ready, if any. It was taken at `time_us` (µs, any clock that does
-    /// not go backwards).
+    /// Processes the sensor's pending sample, if any. It was taken at `time_us` (µs, any clock that does not go
+    /// backwards).
     ///
     /// # Errors
     /// [`Error`]: a part of the hardware failed. The others have done their work, and the next call goes on.
@@ -111,7 +111,7 @@ impl<T: Scalar, I2C: I2c, F: Write, P: Write> App<T, I2C, F, P> {
         logged.and(sent.map_err(Error::Port)).map(|()| event)
     }
 
-    /// Ends the walk: completes the log, and sends the last position and how many samples there were.
+    /// Ends the walk: completes the log, and sends the last position and the numbers of samples.
     ///
     /// # Errors
     /// [`Error`]; the other part has done its work.

@@ -1,11 +1,11 @@
 use core::fmt;
 
-/// What a part of the hardware did not do: `S` is the bus' error, `F` the file's, `P` the serial port's.
+/// A failure of a part of the hardware: `S` is the bus' error, `F` the file's, `P` the serial port's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error<S, F, P> {
-    /// The sensor cannot be read, or is not the one that is expected.
+    /// The sensor cannot be read, or is not the expected one.
     Sensor(S),
     /// The log was not written.
     Log(F),

@@ -1,4 +1,4 @@
-//! The sensor: what it is set to, and what its counts mean.
+//! The sensor: its settings, and the scale of its counts.
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
@@ -9,10 +9,10 @@ use mpu9250::{
     InterruptEnable, Mpu9250, MpuConfig,
 };
 
-/// 1 g in m/s².
+/// Standard gravity, m/s².
 const STANDARD_GRAVITY: f32 = 9.806_65;
 
-/// A reading in the sensor's counts: 2048 a g, and 2048 a 125 °/s.
+/// A reading in the sensor's counts: 2048 per g, and 2048 per 125 °/s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Counts {
@@ -23,17 +23,17 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Counts a unit of either sensor's.
+    /// The number of counts per unit of either sensor.
     pub(crate) const PER_UNIT: i32 = 2048;
-    /// Units of the gyroscope in °/s; the accelerometer's is 1 g.
+    /// The unit of the gyroscope, °/s; that of the accelerometer is 1 g.
     pub(crate) const GYRO_UNIT: i32 = 125;
 
-    /// m/s².
+    /// The specific force, m/s².
     pub fn specific_force(&self) -> [f32; 3] {
         self.accel.map(|count| f32::from(count) * (STANDARD_GRAVITY / Self::PER_UNIT as f32))
     }
 
-    /// rad/s.
+    /// The angular rate, rad/s.
     pub fn angular_rate(&self) -> [f32; 3] {
         const STEP: f32 = (Counts::GYRO_UNIT as f32).to_radians() / Counts::PER_UNIT as f32;
         self.gyro.map(|count| f32::from(count) * STEP)
@@ -47,7 +47,7 @@ impl Counts {
 pub enum SensorError<E> {
     /// The bus failed.
     Bus(E),
-    /// Another chip answers: this is its `WHO_AM_I`.
+    /// Another chip answered, with this `WHO_AM_I`.
     WrongChip(u8),
     /// The driver gave up.
     Driver,
@@ -98,7 +98,7 @@ impl<I2C: I2c> Imu<I2C> {
         Ok(Self { driver })
     }
 
-    /// The reading that nobody has asked for yet, if there is one.
+    /// The reading that has not been fetched yet, if there is one.
     ///
     /// # Errors
     /// [`SensorError`].
@@ -111,7 +111,7 @@ impl<I2C: I2c> Imu<I2C> {
     }
 }
 
-/// A delay as the driver wants it; `embedded-hal-compat` knows longer integers only.
+/// Adapts a delay to the driver's type; `embedded-hal-compat` only supports longer integers.
 struct Milliseconds<'a, D>(&'a mut D);
 
 impl<D: DelayNs> DelayMs<u8> for Milliseconds<'_, D> {

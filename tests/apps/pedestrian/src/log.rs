@@ -1,16 +1,16 @@
-//! The log: lines gathered to blocks, because a card writes whole blocks whatever one asks for.
+//! The log: lines are collected into blocks, because a card always writes whole blocks.
 
 use embedded_io::Write;
 use heapless::{String, Vec};
 
 use crate::{Counts, razor};
 
-/// Bytes of a card's block.
+/// The size of a card's block, bytes.
 const BLOCK: usize = 512;
-/// Blocks between two updates of the directory: what a cut of the power costs, about a second.
+/// The number of blocks between two updates of the directory: a power cut loses that much, about a second.
 const BLOCKS_A_FLUSH: u32 = 8;
 
-/// A Razor's log in a file.
+/// A log in the Razor's format, in a file.
 pub(crate) struct Log<F> {
     file: F,
     block: Vec<u8, BLOCK>,
@@ -39,13 +39,13 @@ impl<F: Write> Log<F> {
         written
     }
 
-    /// Writes what is there, and the directory.
+    /// Writes the remaining bytes and updates the directory.
     pub(crate) fn close(&mut self) -> Result<(), F::Error> {
         self.write()?;
         self.file.flush()
     }
 
-    /// Writes what is there; what the file does not take is lost.
+    /// Writes the collected bytes; those that the file does not take are lost.
     fn write(&mut self) -> Result<(), F::Error> {
         let written = self.file.write_all(&self.block);
         self.block.clear();

@@ -1,4 +1,4 @@
-//! The application on mocked hardware: every transaction on the bus is expected, and nothing else.
+//! Tests the application on mocked hardware, which expects every transaction on the bus and nothing else.
 
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::i2c::{Mock, Transaction};
@@ -16,7 +16,7 @@ fn read(register: u8, values: &[u8]) -> Transaction {
     Transaction::write_read(MPU, vec![register], values.to_vec())
 }
 
-/// What sets the sensor up, if it says that it is `who`.
+/// The transactions that set the sensor up if it identifies itself as `who`.
 fn setup(who: u8) -> Vec<Transaction> {
     let mut transactions = vec![write(0x27, 0), write(0x34, 0)]; // no auxiliary bus
     transactions.extend([write(0x6B, 0x80), write(0x6B, 1), write(0x6C, 0)]); // reset, clock, all on
@@ -27,18 +27,18 @@ fn setup(who: u8) -> Vec<Transaction> {
     transactions
 }
 
-/// What makes it say when a sample is ready.
+/// The transactions that enable the data-ready interrupt.
 fn interrupt() -> [Transaction; 2] {
     [read(0x38, &[0]), write(0x38, 1)]
 }
 
-/// What reads a sample: 1 g upwards, −125 °/s about x, and one count of 16 g / 32768 along x.
+/// The transactions that read a sample: 1 g upwards, −125 °/s about x, and one count of 16 g / 32768 along x.
 fn sample() -> [Transaction; 2] {
     let counts: [i16; 7] = [1, 0, 2048, 0, -2048, 0, 0];
     [read(0x3A, &[1]), read(0x3B, counts.map(i16::to_be_bytes).as_flattened())]
 }
 
-/// A file of which `room` bytes are free, and the lengths of what was written to it.
+/// A file with `room` free bytes, and the lengths of the writes to it.
 #[derive(Default)]
 struct File {
     text: Vec<u8>,

@@ -1,4 +1,4 @@
-//! The other side of two-way ranging: four anchors, each with a clock and antenna of its own.
+//! The anchors' side of two-way ranging: four anchors, each with its own clock and antenna.
 
 use robot_app::message::{Answer, Question, Report};
 use robot_app::{SITES, TAG};
@@ -7,28 +7,29 @@ use kestirim_uwb_ranging::{METRES_PER_TICK, Timestamp};
 
 use crate::world::ticks;
 
-/// How much faster an anchor's clock runs than the tag's, 10⁻⁹.
+/// The relative drift of each anchor's clock against the tag's, 10⁻⁹.
 const DRIFT: [i64; SITES.len()] = [18_300, -11_700, 400, -20_000];
-/// From the arrival of a question to the departure of its answer, µs; anchors are not equally fast.
+/// The time from the arrival of a question to the departure of its answer, µs; it differs between anchors.
 const REPLY_US: [u64; SITES.len()] = [3_000, 2_700, 4_100, 3_300];
-/// Bytes before the payload: frame control, number, network and address of both sides.
+/// The number of bytes before the payload (frame control, number, network and address of both sides), and that of the
+/// checksum.
 const HEADER: usize = 11;
 const CHECKSUM: usize = 2;
-/// A data frame of IEEE 802.15.4-2006 with short addresses, each with its network.
+/// The frame control of an IEEE 802.15.4-2006 data frame with short addresses, each with its network.
 const CONTROL: [u8; 2] = [0x01, 0x98];
 
-/// A frame in the air.
+/// A frame on the air.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     pub(crate) bytes: [u8; 127],
-    /// With the checksum.
+    /// The length, including the checksum.
     pub(crate) length: usize,
 }
 
-/// The anchors and their part of the exchange that is going on.
+/// The anchors, and their part of the current exchange.
 #[derive(Debug)]
 pub(crate) struct Anchors {
-    /// To the anchor that is asked, m.
+    /// The range to the polled anchor, m.
     pub(crate) range: f32,
     poll_received: Timestamp,
     response_sent: Timestamp,
@@ -40,8 +41,8 @@ impl Anchors {
         Self { range: f32::NAN, poll_received: never, response_sent: never }
     }
 
-    /// What becomes of a frame that left the tag's antenna at `departure`: an answer and the time at
-    /// which it is at the antenna, or silence.
+    /// The reaction to a frame that left the tag's antenna at `departure`: an answer and the time of its arrival at the
+    /// antenna, or silence.
     pub(crate) fn hear(&mut self, frame: &Frame, departure: u64) -> Option<(Frame, u64)> {
         let content = frame.bytes.get(..frame.length.checked_sub(CHECKSUM)?)?;
         let (header, payload) = content.split_first_chunk::<HEADER>()?;
@@ -54,7 +55,7 @@ impl Anchors {
         }
         let flight = (self.range * const { (1.0 / METRES_PER_TICK) as f32 } + 0.5) as u64;
         let site = SITES.get(anchor)?;
-        // Of what neither side takes off, a third is on the way in.
+        // A third of the delay that neither side corrects is on the way in.
         let late_in = i64::from(site.antenna.ticks()) / 3;
         let late_out = i64::from(site.antenna.ticks()) - late_in;
 
@@ -84,11 +85,11 @@ impl Anchors {
     }
 }
 
-/// What an anchor's counter shows.
+/// The reading of an anchor's counter.
 fn clock(anchor: usize, now: u64) -> Timestamp {
     let drift = DRIFT.get(anchor).copied().unwrap_or_default();
     let gained = i128::from(now) * i128::from(drift) / 1_000_000_000;
-    // No two were turned on at the same time.
+    // The anchors were turned on at different times.
     Timestamp::new(
         now.wrapping_add_signed(gained as i64).wrapping_add(anchor as u64 * 0x31_4159_2653),
     )

@@ -1,4 +1,4 @@
-//! A BNO055 as far as its accelerometer goes: page 0 of its registers.
+//! Simulates the accelerometer of a BNO055: page 0 of its registers.
 
 use embedded_hal::i2c::{ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
 
@@ -12,17 +12,17 @@ const OPR_MODE: u8 = 0x3d;
 const SYS_TRIGGER: u8 = 0x3f;
 const ACC_ONLY: u8 = 0x01;
 const RESET: u8 = 0x20;
-/// From a reset to the first acknowledge, µs (data sheet, table 0-2).
+/// The time from a reset to the first acknowledge, µs (data sheet, table 0-2).
 const STARTS_IN_US: u64 = 650_000;
 
 /// The chip.
 #[derive(Debug)]
 pub(crate) struct Bno055 {
-    /// cm/s².
+    /// The acceleration, cm/s².
     pub(crate) acceleration: [i16; 3],
     registers: [u8; 128],
     register: u8,
-    /// Until then it does not answer.
+    /// The time until which it does not answer.
     ready: u64,
 }
 
@@ -61,7 +61,7 @@ impl Bno055 {
     }
 }
 
-/// The I²C bus that the chip is on.
+/// The I²C bus of the chip.
 #[derive(Debug)]
 pub struct I2cBus<'a>(pub &'a World);
 

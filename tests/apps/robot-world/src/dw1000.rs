@@ -1,4 +1,4 @@
-//! A DW1000 as its user manual describes the registers that ranging needs.
+//! Simulates the DW1000's registers that ranging needs, after its user manual.
 
 use robot_app::TAG;
 
@@ -35,41 +35,41 @@ const RXENAB: u32 = 1 << 8;
 const SENT: u32 = 0xf << 4; // TXFRB, TXPRS, TXPHS, TXFRS
 const RECEIVED: u32 = 0b110_1111 << 8; // RXPRD, RXSFDD, LDEDONE, RXPHD; RXDFR, RXFCG
 const LDEDONE: u32 = 1 << 10;
-/// `SYS_CFG`: frames for others are dropped.
+/// The bit of `SYS_CFG` that drops frames for others.
 const FFEN: u32 = 1;
-/// `CHAN_CTRL`: channel 5 both ways, PRF 16 MHz, preamble code 4 both ways.
+/// The value of `CHAN_CTRL` for channel 5 both ways, PRF 16 MHz, preamble code 4 both ways.
 const ANCHORS_CHANNEL: u32 = 5 | 5 << 4 | 1 << 18 | 4 << 22 | 4 << 27;
-/// `TX_FCTRL`: 6.8 Mbit/s, PRF 16 MHz, 128 symbols.
+/// The value of `TX_FCTRL` for 6.8 Mbit/s, PRF 16 MHz, 128 symbols, and the mask of these fields.
 const ANCHORS_RATE: u32 = 2 << 13 | 1 << 16 | 1 << 18 | 1 << 20;
 const RATE: u32 = 0b11 << 13 | 0b1111 << 16 | 0b11 << 20;
 
-/// What is in the LDE's microcode loader's way: its clock, set as the manual's table 4 says.
+/// The clock setting with which the LDE's microcode can be loaded, after the manual's table 4.
 const LDE_CLOCK: u32 = 0x0301;
 const LDELOAD: u16 = 1 << 15;
 
-/// From the start of a transmission to the mark that is stamped, and as long before the mark a receiver
-/// has to be on: preamble of 128 symbols and start of frame, µs.
+/// The time from the start of a transmission to the mark that is timestamped, µs: a preamble of 128 symbols and the
+/// start of frame. A receiver has to be on for as long before the mark.
 const PREAMBLE_US: u64 = 140;
-/// From the mark to the end of a frame, µs.
+/// The time from the mark to the end of a frame, µs.
 const FRAME_US: u64 = 60;
 
-/// A frame that is still to come, or coming.
+/// A frame on its way to the chip.
 #[derive(Debug)]
 struct Coming {
     frame: Frame,
-    /// When its mark is at the antenna.
+    /// The time at which its mark is at the antenna.
     arrival: u64,
 }
 
 /// The chip.
 #[derive(Debug)]
 pub(crate) struct Dw1000 {
-    /// A row a register file; those above 0x2f that no chip has are the pages of the LDE.
+    /// One row for each register file; rows above 0x2f, which the chip does not have, are the pages of the LDE.
     registers: [[u8; 128]; 64],
     lde_loaded: bool,
-    /// Since when it listens.
+    /// The time since when it has been listening.
     listens: Option<u64>,
-    /// When the frame that is being sent is gone.
+    /// The time at which the current transmission ends.
     sent: Option<u64>,
     coming: Option<Coming>,
 }
@@ -118,7 +118,7 @@ impl Dw1000 {
                 return self.set(SYS_STATUS, 0, &status.to_le_bytes());
             }
             SYS_CTRL => return self.control(word(bytes), now, anchors),
-            // Event counters: commands that are gone when they are read. Nothing went wrong so far.
+            // The event counters; the commands need not be stored. Nothing has gone wrong so far.
             DIG_DIAG => return,
             OTP_IF if sub == OTP_CTRL && word(bytes) as u16 & LDELOAD != 0 => {
                 self.lde_loaded |= self.get(PMSC, 0) & 0x0fff == LDE_CLOCK;
@@ -160,7 +160,7 @@ impl Dw1000 {
         }
     }
 
-    /// Brings the status up to date.
+    /// Updates the status register.
     fn look(&mut self, now: u64) {
         let mut status = self.get(SYS_STATUS, 0);
         if self.sent.is_some_and(|sent| sent <= now) {
@@ -193,7 +193,7 @@ impl Dw1000 {
         self.set(RX_BUFFER, 0, &frame.bytes);
     }
 
-    /// Whether the filter lets a frame pass: its receiver is this chip.
+    /// Whether the frame filter accepts a frame: its receiver is this chip.
     fn is_ours(&self, frame: &Frame) -> bool {
         let [address_low, address, network_low, network] = self.get(PANADR, 0).to_le_bytes();
         let receiver = frame.bytes.get(3..7);
@@ -215,7 +215,7 @@ impl Dw1000 {
     }
 }
 
-/// Row and column of a register.
+/// The row and column of a register.
 fn place(file: u8, sub: u16) -> (usize, usize) {
     let row = if file == LDE_CTRL { 0x30 + (sub >> 11) } else { u16::from(file) };
     (usize::from(row), usize::from(sub & 0x7f))

@@ -1,5 +1,5 @@
-//! The robot's surroundings under an emulator: a DW1000 and a BNO055 at the level of their registers,
-//! and anchors that answer in such a way that the ranges of a stream come out.
+//! Simulates the robot's surroundings under an emulator: a DW1000 and a BNO055 at register level, and anchors whose
+//! answers yield the ranges of a stream.
 #![no_std]
 
 mod anchors;

@@ -1,4 +1,4 @@
-//! The SPI bus that the radio has for itself, at 3 MHz, and its chip select.
+//! The SPI bus of the radio, at 3 MHz, and its chip select.
 
 use core::convert::Infallible;
 
@@ -8,21 +8,21 @@ use embedded_hal::spi::{self, SpiBus};
 use crate::World;
 use crate::world::ticks;
 
-/// What a byte takes, and what turning the chip select takes besides, µs.
+/// The duration of a byte, and that of switching the chip select, µs.
 const BYTE_US: u64 = 3;
 const SELECT_US: u64 = 5;
 
-/// The bus.
+/// The SPI bus.
 ///
-/// It plays whole transactions: the driver hands each register over in one piece, its header first.
+/// It handles whole transactions: the driver passes each register in one piece, its header first.
 #[derive(Debug)]
 pub struct Spi<'a>(pub &'a World);
 
-/// The chip select. The bus knows by itself where a transaction begins.
+/// The chip select; the bus does not depend on it to find the start of a transaction.
 #[derive(Debug)]
 pub struct ChipSelect<'a>(pub &'a World);
 
-/// What the first bytes of a transaction say.
+/// The header of a transaction.
 struct Header {
     writes: bool,
     file: u8,

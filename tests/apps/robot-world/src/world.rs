@@ -1,4 +1,4 @@
-//! Time, and what happens in it.
+//! The simulated time and surroundings.
 
 use core::cell::RefCell;
 
@@ -8,34 +8,34 @@ use crate::anchors::Anchors;
 use crate::bno055::Bno055;
 use crate::dw1000::Dw1000;
 
-/// Ticks of the radio's counter in 10 µs: 15.65 ps each.
+/// The ticks of the radio's counter in 10 µs, 15.65 ps each.
 const TICKS_IN_10_US: u64 = 638_976;
-/// Where the counter is when a stream begins: it wraps 2 ms later, in the middle of an exchange.
+/// The counter at the start of a stream: it wraps 2 ms later, in the middle of an exchange.
 const BEGIN: u64 = (1 << 40) - 2 * 100 * TICKS_IN_10_US;
 
-/// Ticks of an interval in µs.
+/// The number of ticks in an interval in µs.
 pub(crate) const fn ticks(us: u64) -> u64 {
     us * TICKS_IN_10_US / 10
 }
 
-/// What the devices measure from one tick of the robot's clock to the next.
+/// The measurements of the devices in one tick of the robot's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// µs since the start of the stream.
+    /// The time since the start of the stream, µs.
     pub time_us: u64,
-    /// To the anchor whose turn it is, m; not a number if it is silent.
+    /// The range to the anchor whose turn it is, m; NaN if it is silent.
     pub range: f32,
-    /// In the body's axes, cm/s².
+    /// The acceleration in the body axes, cm/s².
     pub acceleration: [i16; 3],
 }
 
-/// A robot's surroundings: the devices on its buses, the anchors in the air.
+/// The surroundings of a robot: the devices on its buses, and the anchors on the air.
 #[derive(Debug)]
 pub struct World(RefCell<State>);
 
 #[derive(Debug)]
 pub(crate) struct State {
-    /// The radio's counter, not wrapped: the time of everything here.
+    /// The radio's counter without wrapping, which is the time of the whole simulation.
     pub(crate) now: u64,
     pub(crate) radio: Dw1000,
     pub(crate) imu: Bno055,
@@ -43,7 +43,7 @@ pub(crate) struct State {
 }
 
 impl World {
-    /// Just after power-on.
+    /// The surroundings just after power-on.
     pub const fn new() -> Self {
         Self(RefCell::new(State {
             now: 0,
@@ -53,8 +53,8 @@ impl World {
         }))
     }
 
-    /// Moves on to a sample's time, if that is still to come, and lets the devices measure it.
-    /// A stream begins 17 s after power-on.
+    /// Advances to the time of a sample, if that is in the future, and lets the devices measure it. A stream begins 17
+    /// s after power-on.
     pub fn advance(&self, sample: &Sample) {
         self.with(|state| {
             state.now = state.now.max(BEGIN + ticks(sample.time_us));
@@ -63,7 +63,7 @@ impl World {
         });
     }
 
-    /// None if a device used another while it is used, which none does.
+    /// Runs `act` on the state; `None` if a device accessed another one during its own access, which never happens.
     pub(crate) fn with<T>(&self, act: impl FnOnce(&mut State) -> T) -> Option<T> {
         self.0.try_borrow_mut().ok().map(|mut state| act(&mut state))
     }

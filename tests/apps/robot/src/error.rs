@@ -2,40 +2,40 @@ use core::fmt;
 
 use crate::{ImuError, RadioError};
 
-/// Why the robot cannot go on: what helps is a reset.
+/// An error after which the robot needs a reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error {
     /// The bus of the radio failed.
     Radio,
-    /// The serial port takes nothing.
+    /// The serial port does not accept data.
     Telemetry,
-    /// The room's anchors are not what the tracker can work with.
+    /// The tracker cannot work with the room's anchors.
     Room(kestirim_uwb_tracker::Error),
 }
 
-/// Why a step brought no range.
+/// The reason why a step yielded no range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum RangeError {
     /// The exchange failed.
     Radio(RadioError),
-    /// Its times make no distance.
+    /// The timestamps do not yield a distance.
     Exchange(kestirim_uwb_ranging::Error),
-    /// The tracker refused it, and is as it was.
+    /// The tracker refused the range, and is unchanged.
     Refused(kestirim_uwb_tracker::Error),
 }
 
-/// Why a step brought no acceleration.
+/// The reason why a step yielded no acceleration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum AccelerationError {
-    /// The IMU did not tell it.
+    /// The IMU did not deliver it.
     Imu(ImuError),
-    /// The tracker refused it, and is as it was.
+    /// The tracker refused the acceleration, and is unchanged.
     Refused(kestirim_uwb_tracker::Error),
 }
 

@@ -1,4 +1,4 @@
-//! A BNO055 as accelerometer.
+//! A BNO055 used as an accelerometer.
 
 use bno055::{BNO055OperationMode, Bno055, Error};
 use embedded_hal::delay::DelayNs;
@@ -8,14 +8,14 @@ use nalgebra::Vector3;
 
 use crate::Number;
 
-/// Why there is no acceleration.
+/// The reason why there is no acceleration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ImuError {
-    /// The bus failed, or nobody answered.
+    /// The bus failed, or no chip answered.
     Bus,
-    /// Who answered is no BNO055.
+    /// The chip that answered is not a BNO055.
     NotABno055,
 }
 
@@ -36,13 +36,13 @@ impl<I: I2c> Imu<I> {
         Ok(Self { driver })
     }
 
-    /// What the accelerometer shows in the chip's axes, gravity included, m/s².
+    /// The reading of the accelerometer in the chip's axes, including gravity, m/s².
     ///
     /// # Errors
     /// Any [`ImuError`].
     pub fn acceleration(&mut self) -> Result<Vector3<Number>, ImuError> {
         let raw = self.driver.accel_data_fixed().map_err(|error| why(&error))?;
-        // 1 cm/s² a count, from the chip to the tracker without floating point.
+        // 1 cm/s² per count, converted to the tracker's number without floating point.
         Ok(Vector3::new(raw.x, raw.y, raw.z)
             .map(|count| Number::from_micro(i32::from(count) * 10_000)))
     }

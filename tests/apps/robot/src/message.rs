@@ -1,7 +1,7 @@
-//! What tag and anchors say to each other: the payloads of IEEE 802.15.4 data frames.
+//! The messages between tag and anchors: the payloads of IEEE 802.15.4 data frames.
 //!
-//! The tag polls, the anchor responds, the tag sends a final message, and the anchor reports the
-//! three times that only it knows. An anchor answers at its leisure: no time is promised.
+//! The tag polls, the anchor responds, the tag sends a final message, and the anchor reports the three timestamps that
+//! only it knows. Anchors may answer at any time.
 
 use kestirim_uwb_ranging::Timestamp;
 
@@ -13,14 +13,14 @@ const REPORT: u8 = 0x70;
 /// A message of the tag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Question {
-    /// Begins an exchange.
+    /// The poll, which begins an exchange.
     Poll,
-    /// Ends it.
+    /// The final message of the tag.
     Final,
 }
 
 impl Question {
-    /// The payload, for the exchange of this number.
+    /// The payload for the exchange with this number.
     pub const fn encode(self, exchange: u8) -> [u8; 2] {
         match self {
             Self::Poll => [POLL, exchange],
@@ -28,7 +28,7 @@ impl Question {
         }
     }
 
-    /// The question in a payload, and the number of its exchange.
+    /// Decodes a payload into the question and the number of its exchange.
     pub const fn decode(payload: &[u8]) -> Option<(Self, u8)> {
         match *payload {
             [POLL, exchange] => Some((Self::Poll, exchange)),
@@ -41,28 +41,28 @@ impl Question {
 /// A message of an anchor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// To a poll.
+    /// The response to a poll.
     Response,
-    /// To a final message.
+    /// The report, after a final message.
     Report(Report),
 }
 
-/// An anchor's times of an exchange, by its own counter.
+/// An anchor's timestamps of an exchange, by its own counter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Report {
-    /// When the poll came.
+    /// The arrival of the poll.
     pub poll_received: Timestamp,
-    /// When the response left.
+    /// The departure of the response.
     pub response_sent: Timestamp,
-    /// When the final message came.
+    /// The arrival of the final message.
     pub final_received: Timestamp,
 }
 
 impl Answer {
-    /// Bytes of the longest payload.
+    /// The length of the longest payload, bytes.
     pub const LONGEST: usize = 17;
 
-    /// Writes the payload, for the exchange of this number, and answers with its length.
+    /// Writes the payload for the exchange with this number, and returns its length.
     pub fn encode(&self, exchange: u8, payload: &mut [u8; Self::LONGEST]) -> usize {
         let (head, times) = payload.split_at_mut(2);
         let Self::Report(report) = self else {
@@ -77,7 +77,7 @@ impl Answer {
         Self::LONGEST
     }
 
-    /// The answer in a payload, and the number of its exchange.
+    /// Decodes a payload into the answer and the number of its exchange.
     pub fn decode(payload: &[u8]) -> Option<(Self, u8)> {
         match *payload {
             [RESPONSE, exchange] => Some((Self::Response, exchange)),

@@ -13,43 +13,43 @@ use kestirim_uwb_ranging::{DoubleSided, Timestamp};
 
 use crate::message::{Answer, Question, Report};
 
-/// How often the chip is asked whether it has finished, and how long we wait in between, µs: 10 ms.
+/// The number of times that the chip is polled for completion, and the pause in between, µs: 10 ms in all.
 const QUESTIONS: u32 = 200;
 const PAUSE_US: u32 = 50;
 
-/// Why there is no range.
+/// The reason why there is no range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum RadioError {
-    /// The chip did not send, or nobody answered.
+    /// The chip did not send, or no anchor answered.
     TimedOut,
-    /// The frame that came was damaged.
+    /// The received frame was damaged.
     Damaged,
-    /// The frame that came is not the answer to what was asked.
+    /// The received frame is not the expected answer.
     Unexpected,
-    /// The bus failed: the driver keeps it, and a new one has to be made after a reset.
+    /// The bus failed: the driver is lost with it, and a new one must be created after a reset.
     Lost,
 }
 
-/// How the tag is called, and what its antenna delays (ticks), which the chip takes off its stamps.
+/// The tag's addresses, and the delays of its antenna (ticks), which the chip subtracts from its timestamps.
 #[derive(Clone, Copy, Debug)]
 pub struct Tag {
-    /// The network of tag and anchors.
+    /// The network of the tag and the anchors.
     pub network: u16,
-    /// The tag's address in it.
+    /// The tag's address in the network.
     pub address: u16,
-    /// From the antenna to the stamp of what is received, ticks.
+    /// The delay from the antenna to the timestamp of a received frame, ticks.
     pub receive_delay: u16,
-    /// From the stamp of what is sent to the antenna, ticks.
+    /// The delay from the timestamp of a transmitted frame to the antenna, ticks.
     pub transmit_delay: u16,
 }
 
 type Driver<B, CS, State> = DW1000<Reverse<B>, Reverse<RefCell<CS>>, State>;
 
-/// A DW1000 on a bus that it has for itself, as the driver holds its chip select.
+/// A DW1000 on a bus of its own, because the driver holds its chip select.
 pub struct Radio<B: SpiBus, CS: OutputPin, D> {
-    /// None after the bus failed.
+    /// The driver; `None` after the bus failed.
     driver: Option<Driver<B, CS, Ready>>,
     delay: D,
     network: u16,
@@ -57,7 +57,7 @@ pub struct Radio<B: SpiBus, CS: OutputPin, D> {
 }
 
 impl<B: SpiBus, CS: OutputPin, D: DelayNs> Radio<B, CS, D> {
-    /// Makes the chip ready; it was reset before, and the bus runs at 3 MHz or below.
+    /// Initialises the chip, which must have been reset before; the bus runs at 3 MHz or less.
     ///
     /// # Errors
     /// [`RadioError::Lost`].
@@ -72,13 +72,12 @@ impl<B: SpiBus, CS: OutputPin, D: DelayNs> Radio<B, CS, D> {
         Ok(Self { driver: Some(driver), delay, network: tag.network, exchange: 0 })
     }
 
-    /// An exchange with the anchor of this address.
+    /// Performs an exchange with the anchor at this address.
     ///
-    /// Both clocks are measured in it: no carrier offset is needed, of which the driver reads 16 of 21
-    /// bits.
+    /// It measures both clocks, so no carrier offset is needed, of which the driver reads 16 of 21 bits.
     ///
     /// # Errors
-    /// Any [`RadioError`]; all but `Lost` are gone with the next exchange.
+    /// Any [`RadioError`]; the next exchange recovers from all but `Lost`.
     pub fn exchange(&mut self, anchor: u16) -> Result<DoubleSided, RadioError> {
         self.exchange = self.exchange.wrapping_add(1);
         let poll_sent = self.send(Question::Poll, anchor)?;
@@ -120,7 +119,7 @@ impl<B: SpiBus, CS: OutputPin, D: DelayNs> Radio<B, CS, D> {
         let from = Some(address(self.network, anchor));
         let exchange = self.exchange;
         let received = patiently(&mut self.delay, || {
-            // As long as a frame can be.
+            // The longest possible frame.
             let mut buffer = [0; 127];
             let message = receiving.wait_receive(&mut buffer).map_err(|e| e.map(|e| why(&e)))?;
             let time = Timestamp::new(message.rx_time.value());
@@ -157,7 +156,7 @@ where
     }
 }
 
-/// Asks again and again, but not for ever.
+/// Polls repeatedly, but not for ever.
 fn patiently<T>(
     delay: &mut impl DelayNs,
     mut ask: impl FnMut() -> nb::Result<T, RadioError>,
@@ -172,7 +171,7 @@ fn patiently<T>(
     Err(RadioError::TimedOut)
 }
 
-/// The driver's idea of a delay, which `embedded-hal-compat` does not offer: milliseconds in a byte.
+/// Adapts a delay to the driver's type, which `embedded-hal-compat` does not support: milliseconds in a byte.
 struct Milliseconds<'a, D>(&'a mut D);
 
 impl<D: DelayNs> embedded_hal_02::blocking::delay::DelayMs<u8> for Milliseconds<'_, D> {

@@ -1,4 +1,4 @@
-//! The loop's body: one anchor after the other.
+//! The body of the loop, one anchor after the other.
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::OutputPin;
@@ -12,27 +12,27 @@ use kestirim_uwb_tracker::{CalibratedPlaneTracker, Config, InertialSample, Outco
 use crate::room::{HEIGHT, SITES, Site, metres};
 use crate::{AccelerationError, Error, Imu, Number, Radio, RadioError, RangeError};
 
-/// What a step brought.
+/// The result of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Step {
-    /// Which anchor was asked.
+    /// The anchor that was polled.
     pub anchor: usize,
-    /// What became of its range.
+    /// The outcome of its range.
     pub range: Result<Outcome, RangeError>,
-    /// What became of the acceleration, without which the robot still finds its way.
+    /// The outcome of the acceleration, without which the robot can still be tracked.
     pub acceleration: Result<(), AccelerationError>,
 }
 
-/// A robot that knows where it is, and tells.
+/// A robot that determines its position and reports it.
 pub struct Robot<B: SpiBus, CS: OutputPin, D, I, W> {
     radio: Radio<B, CS, D>,
     imu: Imu<I>,
     telemetry: Transmitter<W>,
     tracker: CalibratedPlaneTracker<Number, { SITES.len() }>,
-    /// Whose turn it is.
+    /// The anchor whose turn it is.
     anchor: usize,
-    /// Exchanges and readings that failed.
+    /// The number of exchanges and readings that failed.
     failed: u32,
 }
 
@@ -44,7 +44,7 @@ where
     I: I2c,
     W: Write,
 {
-    /// A robot with these devices, somewhere in [the room](SITES).
+    /// Creates a robot with these devices, somewhere in [the room](SITES).
     ///
     /// # Errors
     /// [`Error::Room`].
@@ -56,12 +56,12 @@ where
         Ok(Self { radio, imu, telemetry, tracker, anchor: 0, failed: 0 })
     }
 
-    /// Takes in the acceleration and the range to the next anchor, and tells what became of them.
-    /// `time_us` never goes back (µs since any moment).
+    /// Takes the acceleration and the range to the next anchor, and returns their outcomes. `time_us` must not go back
+    /// (µs since any moment).
     ///
     /// # Errors
-    /// [`Error::Radio`] or [`Error::Telemetry`]. Silent anchors and samples that do not fit are told and
-    /// counted, and the next step goes on.
+    /// [`Error::Radio`] or [`Error::Telemetry`]. Silent anchors and refused samples are reported and counted, and the
+    /// next step goes on.
     pub fn step(&mut self, time_us: u64) -> Result<Step, Error> {
         let acceleration = self.feel(time_us);
         let anchor = self.anchor;
@@ -85,7 +85,7 @@ where
         Ok(Step { anchor, range, acceleration })
     }
 
-    /// Lets the tracker feel whether the robot stands.
+    /// Passes the acceleration to the tracker, which detects from it whether the robot stands.
     fn feel(&mut self, time_us: u64) -> Result<(), AccelerationError> {
         let acceleration = self.imu.acceleration().map_err(AccelerationError::Imu)?;
         let sample = InertialSample { time_us, acceleration, push: None };
@@ -115,13 +115,13 @@ where
     fn tell_position(&mut self, time_us: u64) -> Result<(), Error> {
         let Some(position) = self.tracker.position() else { return Ok(()) };
         let position = [position.x, position.y, metres(HEIGHT)].map(Scalar::to_f32);
-        // That of both components together is known.
+        // The tracker gives the standard deviation of both components together.
         let sigma = self.tracker.health(time_us).position_sigma;
         let sigma = sigma.map(|sigma| sigma.to_f32() * core::f32::consts::FRAC_1_SQRT_2);
         self.send(Position { time_us, position, sigma })
     }
 
-    /// After every round.
+    /// Sends the health after every round.
     fn tell_health(&mut self, time_us: u64) -> Result<(), Error> {
         let health = self.tracker.health(time_us);
         let (accepted, rejected, failed) = (health.taken, health.rejected, self.failed);

@@ -1,4 +1,4 @@
-//! The room: what is to be changed first when this is copied.
+//! The room: the part to adapt first when copying this application.
 
 use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::AntennaDelay;
@@ -12,9 +12,9 @@ use crate::{Number, Tag};
 pub struct Site {
     /// Its address in the network.
     pub address: u16,
-    /// Its place in the room's axes (right-handed, z up), cm.
+    /// Its position in the room's axes (right-handed, z up), cm.
     pub place: [i32; 3],
-    /// What tag and anchor do not take off by themselves, together, ticks: from a calibration.
+    /// The antenna delay of tag and anchor together that they do not correct themselves, ticks: from a calibration.
     pub antenna: AntennaDelay,
 }
 
@@ -22,7 +22,7 @@ pub struct Site {
 pub const TAG: Tag =
     Tag { network: 0xdeca, address: 0x0001, receive_delay: 16_450, transmit_delay: 16_450 };
 
-/// Height of the tag, cm.
+/// The height of the tag, cm.
 pub const HEIGHT: i32 = 100;
 
 /// The anchors, in the corners of 10 m × 8 m.
@@ -34,12 +34,12 @@ pub const SITES: [Site; 4] = [
 ];
 
 impl Site {
-    /// As the tracker wants it.
+    /// The anchor in the tracker's form.
     pub(crate) fn anchor(&self) -> Anchor<Number> {
         Anchor { position: SVector::from(self.place.map(metres)), bias: Number::ZERO }
     }
 
-    /// What ranges to it are too long by, m.
+    /// The bias of ranges to it, m.
     pub(crate) fn excess(&self) -> Number {
         self.antenna.excess(AntennaDelay::new(0))
     }

@@ -1,4 +1,4 @@
-//! The robot's driver and the simulated radio, on the host.
+//! Tests the robot's driver with the simulated radio, on the host.
 
 use embedded_io::{ErrorType, Write};
 use kestirim_telemetry::{Message, Receiver};
@@ -21,7 +21,7 @@ impl Write for &mut Told {
     }
 }
 
-/// A tick of the counters is 4.7 mm, m.
+/// The resolution of a range, m: a tick of the counters is 4.7 mm.
 const TICK: f32 = 0.005;
 const STEPS: u64 = 7 * 4 * 40;
 

@@ -9,22 +9,22 @@ use nalgebra::SVector;
 use crate::aeroplane::{START, gains};
 use crate::{Error, Sensors};
 
-/// Milliseconds between two calls of [`App::step`].
+/// The time between two calls of [`App::step`], ms.
 pub const INTERVAL_MS: u32 = 10;
 
 const GAINS: PredictorGains<4, 2, 3> = gains(INTERVAL_MS as f64 * 1e-3);
 
-/// The health is sent every so many steps, once a second.
+/// The number of steps per transmitted health, which makes one a second.
 const STEPS_A_HEALTH: u32 = 1_000 / INTERVAL_MS;
 
-/// What happened in a step that somebody may want to know.
+/// A noteworthy event in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Event {
-    /// The observer refused what was applied or measured, and moved on without it.
+    /// The observer refused the input or the measurement, and advanced without it.
     Refused(Refusal),
-    /// The sensors are back after so many steps without.
+    /// The sensors are back after this many steps without them.
     Recovered(u32),
 }
 
@@ -34,7 +34,7 @@ pub struct App<T: Scalar, I, A, D, P> {
     observer: Predictor<T, 4, 2, 3>,
     line: Transmitter<P>,
     steps: u32,
-    /// Steps without sensors, up to this one.
+    /// The number of consecutive steps without sensors.
     blind: u32,
     accepted: u32,
     rejected: u32,
@@ -42,7 +42,7 @@ pub struct App<T: Scalar, I, A, D, P> {
 }
 
 impl<T: Scalar, I: I2c, A: I2c, D: DelayNs, P: Write> App<T, I, A, D, P> {
-    /// An application whose observer starts where [`START`] says.
+    /// Creates an application whose observer starts at [`START`].
     ///
     /// # Errors
     /// [`Error::Observer`] if the scalar cannot hold the gains.
@@ -60,8 +60,8 @@ impl<T: Scalar, I: I2c, A: I2c, D: DelayNs, P: Write> App<T, I, A, D, P> {
         })
     }
 
-    /// Reads the sensors and moves on by [`INTERVAL_MS`] with what the actuators apply from `time_us` (µs) on:
-    /// elevator (rad) and throttle. Without sensors the observer moves on as if they had shown what was
+    /// Reads the sensors and advances by [`INTERVAL_MS`] with the inputs that the actuators apply from `time_us` (µs)
+    /// on: elevator (rad) and throttle. Without sensors the observer advances as if they had measured what was
     /// expected.
     ///
     /// # Errors
@@ -83,7 +83,7 @@ impl<T: Scalar, I: I2c, A: I2c, D: DelayNs, P: Write> App<T, I, A, D, P> {
         Ok(event)
     }
 
-    /// The state at the time of the next step, as [`State`] has it.
+    /// The state at the time of the next step, in the form of [`State`].
     pub fn estimate(&self) -> [f32; 4] {
         self.observer.estimate().as_array().map(T::to_f32)
     }
@@ -99,7 +99,7 @@ impl<T: Scalar, I: I2c, A: I2c, D: DelayNs, P: Write> App<T, I, A, D, P> {
             }
             Err(refusal) => {
                 self.rejected = self.rejected.saturating_add(1);
-                // Of inputs that are no numbers nothing can be made: the estimate stays.
+                // With inputs that are not numbers nothing can be computed: the estimate stays.
                 let _ = self.observer.coast(&input);
                 Some(Event::Refused(refusal))
             }

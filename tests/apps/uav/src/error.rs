@@ -2,15 +2,14 @@ use core::fmt;
 
 use crate::SensorError;
 
-/// What a part of the hardware did not do: `B` is the error of the inertial sensor's bus, `P` the serial
-/// port's.
+/// A failure of a part of the hardware: `B` is the error of the inertial sensor's bus, `P` the serial port's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Error<B, P> {
-    /// A sensor cannot be read, or is not the one that is expected.
+    /// A sensor cannot be read, or is not the expected one.
     Sensor(SensorError<B>),
-    /// The observer does not take its gains.
+    /// The observer refused its gains.
     Observer(kestirim_luenberger::Error),
     /// The telemetry was not sent.
     Port(P),

@@ -1,4 +1,4 @@
-//! The sensors: how they are set up, and what they measure in SI units.
+//! The sensors: their setup, and their measurements in SI units.
 
 use bno055::{BNO055OperationMode, Bno055};
 use embedded_hal::delay::DelayNs;
@@ -12,11 +12,11 @@ use ms4525do::{Ms4525do, Ms4525doError, calculate_airspeed};
 pub enum SensorError<B> {
     /// The inertial sensor's bus failed.
     Bus(B),
-    /// Another chip answers in the inertial sensor's place: this is its identity.
+    /// Another chip answered in place of the inertial sensor, with this identity.
     WrongChip(u8),
     /// The inertial sensor's driver gave up.
     Driver,
-    /// The airspeed sensor was not read, or says that it is broken.
+    /// The airspeed sensor could not be read, or reports a fault.
     Airspeed(Ms4525doError),
 }
 
@@ -38,7 +38,7 @@ pub struct Sensors<I, A, D> {
 }
 
 impl<I: I2c, A: I2c, D: DelayNs> Sensors<I, A, D> {
-    /// Sets the inertial sensor up; the other needs none of it.
+    /// Sets up the inertial sensor; the airspeed sensor needs no setup.
     ///
     /// # Errors
     /// [`SensorError`].

@@ -1,4 +1,4 @@
-//! The application on mocked hardware: every transaction on the buses is expected, and nothing else.
+//! Tests the application on mocked hardware, which expects every transaction on the buses and nothing else.
 
 use embedded_hal::i2c::ErrorKind;
 use embedded_hal_mock::eh1::delay::NoopDelay;
@@ -14,12 +14,12 @@ fn write(register: u8, value: u8) -> Transaction {
     Transaction::write(BNO, vec![register, value])
 }
 
-/// A register of the first page, which the driver asks for every time.
+/// Reads a register of the first page, which the driver selects every time.
 fn read(register: u8, values: &[u8]) -> [Transaction; 2] {
     [write(0x07, 0), Transaction::write_read(BNO, vec![register], values.to_vec())]
 }
 
-/// What sets the inertial sensor up, if it says that it is `who`.
+/// The transactions that set the inertial sensor up if it identifies itself as `who`.
 fn setup(who: u8) -> Vec<Transaction> {
     let mut transactions = vec![write(0x07, 0)];
     transactions.extend(read(0x00, &[who]));
@@ -31,7 +31,7 @@ fn setup(who: u8) -> Vec<Transaction> {
     transactions
 }
 
-/// What reads −32 °/s and 8 ° of pitch.
+/// The transactions that read −32 °/s and 8 ° of pitch.
 fn inertial() -> [Transaction; 4] {
     let rate: [i16; 3] = [0, -32 * 16, 0];
     let euler: [i16; 3] = [0, 0, 8 * 16];
@@ -40,7 +40,7 @@ fn inertial() -> [Transaction; 4] {
     [a, b, c, d]
 }
 
-/// What reads 1000 Pa at 15 °C: 7241 and 665 counts.
+/// The transactions that read 1000 Pa at 15 °C: 7241 and 665 counts.
 fn airspeed() -> [Transaction; 3] {
     let said = |status: u8| {
         let [high, low] = 7241_u16.to_be_bytes();
@@ -50,7 +50,7 @@ fn airspeed() -> [Transaction; 3] {
     [Transaction::write(MS, vec![0]), said(0), said(2)]
 }
 
-/// A step's Pitot tube that says it is broken.
+/// The transactions of a step in which the Pitot tube's sensor reports a fault.
 fn fault() -> [Transaction; 3] {
     let said = || Transaction::read(MS, vec![0xC0, 0, 0, 0]);
     [Transaction::write(MS, vec![0]), said(), said()]
@@ -58,7 +58,7 @@ fn fault() -> [Transaction; 3] {
 
 type Tested<'a> = App<f32, Mock, Mock, NoopDelay, &'a mut Vec<u8>>;
 
-/// Runs steps with these transactions and answers with what each came to, and what was sent.
+/// Runs steps with these transactions; returns the result of each, and what was sent.
 #[expect(clippy::type_complexity, reason = "it is the application's own")]
 fn run(
     inertial: &[Transaction],

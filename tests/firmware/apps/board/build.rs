@@ -2,7 +2,7 @@
 
 use std::{env, fs, path::PathBuf};
 
-/// Of the machine with most peripherals, and of that with most memory.
+/// The memory maps of the machine with the most peripherals, and of that with the most memory.
 const MAPS: [&str; 2] = ["memory/lm3s6965.x", "memory/mps2-an386.x"];
 
 fn main() {

@@ -1,5 +1,5 @@
-//! The attitude reference alone, as the replay sees it: what a foot's, a drone's or a robot's inertial
-//! sensor costs before anything is done with it.
+//! The attitude reference alone, as a workload for the replay: the basic cost of the inertial sensor of a foot, a drone
+//! or a robot.
 
 use kestirim_attitude::{Ahrs, Gains, Orientation};
 use kestirim_scalar::{Components, Scalar};
@@ -10,7 +10,7 @@ use crate::four_ranges::Named;
 use crate::replay::Tracker;
 use crate::stream::Sample;
 
-/// A reference that starts upright and without a known gyro bias.
+/// A reference that starts upright and without a known gyroscope bias.
 pub struct Reference<T: Scalar> {
     ahrs: Ahrs<T>,
     last_us: u64,
@@ -55,7 +55,7 @@ impl<T: Named> Tracker for Reference<T> {
         }
     }
 
-    /// Not a place: where up is, in the body's axes.
+    /// The upward direction in the body axes, instead of a position.
     fn position(&self) -> [f32; 3] {
         self.ahrs.orientation().up_in_body().as_array().map(T::to_f32)
     }

@@ -1,4 +1,4 @@
-//! The aeroplane's filter with gusts and biases, as an image runs it.
+//! The aeroplane's filter with gusts and biases, as run by an image.
 
 use core::hint::black_box;
 
@@ -7,10 +7,10 @@ use support::{Class, Meter, fail, line, line_of_text};
 use crate::augmented_model::{filter, step};
 use crate::stream::{Flight, Stream, open};
 
-/// A state is told every so many samples.
+/// The number of samples per reported state.
 const SAMPLES_A_STATE: u32 = 50;
 
-/// Replays a flight at 100 Hz, and tells the host what the observer's images tell.
+/// Replays a flight at 100 Hz, with the same output as the observer's images.
 pub fn run() {
     let Ok((filter, transition, scales)) = filter(0.01) else {
         fail("a model that fits");

@@ -1,4 +1,5 @@
-//! The aeroplane of `uav` with what is not known of it: 4 states, 2 gusts, 3 biases, 4 outputs. The host's tests read this very file.
+//! The aeroplane of `uav` augmented with unknowns: 4 states, 2 gusts, 3 biases, 4 outputs. The host's tests include
+//! this file.
 
 use core::array::from_fn;
 
@@ -12,20 +13,20 @@ use crate::uav::{A, B};
 
 /// The filter in single precision.
 pub type Filter = AugmentedFilter<f32, 9, 6, 4>;
-/// A step of it.
+/// The transition of one step of the filter.
 pub type Transition = AugmentedTransition<f32, 9, 6>;
 
-/// Of the steady flight, m/s.
+/// The airspeed of the steady flight, m/s.
 const AIRSPEED: f64 = 40.0;
 
-/// The filter, its step over an interval (s), and what an output is multiplied by for the filter's units, which are powers
-/// of two.
+/// The filter, its transition over an interval (s), and the factors that convert outputs to the filter's units, which
+/// are powers of two.
 ///
 /// # Errors
-/// None, as the tests have it.
+/// None, as the tests show.
 pub fn filter(interval: f64) -> Result<(Filter, Transition, [f32; 4]), Error> {
     let density = SMatrix::from_diagonal(&[1e-6, 1e-3, 1e-2, 1e-8].into());
-    // Nothing measures it here: it is told to be what the elevator adds at once, and little is believed of that.
+    // There is no sensor for it here: it is set to what the elevator adds directly, with little weight.
     let force = Output {
         row: [-71.6, 0.0, -0.304, -0.684],
         direct: [12.0, -6.3],
@@ -49,7 +50,7 @@ pub fn filter(interval: f64) -> Result<(Filter, Transition, [f32; 4]), Error> {
     Ok((filter, transition, from_fn(|output| units[output].recip() as f32)))
 }
 
-/// Takes in a sample: inputs and three outputs of the log. The bits of the four states.
+/// Takes a sample, inputs and three outputs of the log, and returns the bits of the four states.
 ///
 /// # Errors
 /// Those of the filter.

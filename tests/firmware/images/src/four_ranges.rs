@@ -1,5 +1,5 @@
-//! The common scenario by which filters are compared: position and velocity in the plane, and every 0.1 s
-//! ranges to the four corners of a room of 10 m × 8 m. A step is a prediction and four updates.
+//! The common scenario on which filters are compared: position and velocity in the plane, and every 0.1 s ranges to the
+//! four corners of a room of 10 m × 8 m. A step is a prediction and four updates.
 
 mod adaptive;
 mod robust;
@@ -17,9 +17,9 @@ use crate::stream::Ranges;
 pub use adaptive::{Aekf, Published};
 pub use robust::Robust;
 
-/// What a scalar is called in tables.
+/// A scalar with a name for tables.
 pub trait Named: Scalar {
-    /// The name.
+    /// The name for tables.
     const NAME: &str;
 }
 
@@ -39,26 +39,26 @@ impl Named for kestirim_scalar::Q16_16 {
     const NAME: &str = "q16.16";
 }
 
-/// The scenario's numbers, as values that the compiler does not know: firmware reads them from a
-/// configuration, and a filter made for one interval and noise would look cheaper than it is.
+/// The scenario's parameters, hidden from the optimiser: firmware reads them from a configuration, and a filter
+/// specialised for one interval and noise would look cheaper than it is.
 pub struct Scenario<T: Scalar> {
-    /// Where the anchors are, m.
+    /// The positions of the anchors, m.
     pub anchors: [SVector<T, 3>; 4],
-    /// Time from step to step, s.
+    /// The time between steps, s.
     pub interval: T,
-    /// Power spectral density of the acceleration, m²/s³.
+    /// The power spectral density of the acceleration, m²/s³.
     pub acceleration_density: T,
-    /// Variance of a range, m².
+    /// The variance of a range, m².
     pub range_variance: T,
-    /// The first estimate: m, m, m/s, m/s.
+    /// The initial estimate: m, m, m/s, m/s.
     pub start: [T; 4],
-    /// Variance of each of its states.
+    /// The variance of each state of the initial estimate.
     pub start_variance: T,
 }
 
 impl<T: Scalar> Default for Scenario<T> {
     fn default() -> Self {
-        // In micrometres and the like: `from_f64` is double precision where it is not folded.
+        // In micrometres and the like: `from_f64` uses double precision unless it is folded at compile time.
         let place = |x, y| SVector::from([T::from_micro(x), T::from_micro(y), T::ZERO]);
         black_box(Self {
             anchors: [
@@ -78,7 +78,7 @@ impl<T: Scalar> Default for Scenario<T> {
 }
 
 impl<T: Scalar> Scenario<T> {
-    /// What the range to an anchor should be.
+    /// The expected range to an anchor.
     #[inline(always)]
     pub fn expected(&self, &[x, y, ..]: &[T; 4], anchor: &SVector<T, 3>) -> ExpectedRange<T, 2> {
         expected_range(&SVector::from([x, y]), T::ZERO, anchor)
@@ -93,13 +93,13 @@ impl<T: Scalar> Scenario<T> {
         ConstantVelocity::new(self.interval, self.acceleration_density)
     }
 
-    /// Motion for filters that estimate their process noise themselves.
+    /// The motion model for filters that estimate their process noise themselves.
     fn steady(&self) -> ConstantVelocity<T, 2> {
         ConstantVelocity::new(self.interval, T::ZERO)
     }
 }
 
-/// F and Q of the scenario as matrices, row by row: for filters that want them so.
+/// F and Q of the scenario as matrices, row by row, for filters that need them in this form.
 pub fn transition<T: Scalar>(scenario: &Scenario<T>) -> [[[T; 4]; 4]; 2] {
     let (h, q) = (scenario.interval, scenario.acceleration_density);
     let (o, i) = (T::ZERO, T::ONE);
@@ -123,7 +123,7 @@ fn place<T: Scalar>(estimate: &Gaussian<T, 4>) -> [f32; 3] {
 pub struct Ekf<T: Scalar> {
     scenario: Scenario<T>,
     estimate: Gaussian<T, 4>,
-    /// What each range of the last step said: who watches a filter reads the normalised innovations.
+    /// The innovations of the last step's ranges: applications that monitor a filter read the normalised innovations.
     innovations: [Option<Innovation<T>>; 4],
 }
 

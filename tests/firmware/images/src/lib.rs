@@ -1,7 +1,6 @@
-//! What the images share: a recorded stream and the loop that replays it through a tracker.
+//! Shared parts of the images: a recorded stream and the loop that replays it through a tracker.
 //!
-//! An image is a binary of a few lines in `src/bin`: it names a workload and hands it to
-//! [`support::image!`].
+//! An image is a binary of a few lines in `src/bin`: it names a workload and passes it to [`support::image!`].
 
 #![no_std]
 

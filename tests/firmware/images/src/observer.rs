@@ -1,4 +1,4 @@
-//! The aeroplane's observer of four states, as an image runs it.
+//! The aeroplane's observer of four states, as run by an image.
 
 use core::hint::black_box;
 
@@ -11,7 +11,7 @@ use crate::four_ranges::Named;
 use crate::stream::{Flight, Stream, open};
 use crate::uav::{START, gains};
 
-/// A state is told every so many samples.
+/// The number of samples per reported state.
 const SAMPLES_A_STATE: u32 = 50;
 
 /// Replays a flight at 100 Hz.
@@ -26,10 +26,10 @@ pub fn run_1_khz<T: Named>() {
     run::<T>("observer4-1khz", &GAINS);
 }
 
-/// Tells the host
+/// Prints
 ///
 /// - `name`, `scalar` and `object_bytes` (size of the observer);
-/// - `state`, four numbers: the bits of the estimate in single precision, every so many samples;
+/// - `state`, four numbers: the bits of the estimate in single precision, every `SAMPLES_A_STATE` samples;
 /// - `samples`, and the meter's report as `step`.
 #[inline(always)]
 fn run<T: Named>(name: &str, gains: &PredictorGains<4, 2, 3>) {
@@ -37,7 +37,7 @@ fn run<T: Named>(name: &str, gains: &PredictorGains<4, 2, 3>) {
     let Ok(observer) = Predictor::<T, 4, 2, 3>::new(gains, &start) else {
         fail("gains that fit");
     };
-    // The coefficients would become part of the code otherwise: faster than what most firmware can have.
+    // Otherwise the coefficients would be compiled into the code, which is faster than what most firmware can do.
     let mut observer = black_box(observer);
     line_of_text("name", name);
     line_of_text("scalar", T::NAME);
@@ -53,7 +53,7 @@ fn run<T: Named>(name: &str, gains: &PredictorGains<4, 2, 3>) {
         });
         samples += 1;
         if samples.is_multiple_of(SAMPLES_A_STATE) {
-            // Exact in fixed point, too, below 256.
+            // This is exact in fixed point, too, below 256.
             let state = observer.estimate().as_array().map(T::to_f32);
             line("state", &state.map(|value| i64::from(value.to_bits())));
         }

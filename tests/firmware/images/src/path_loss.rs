@@ -1,4 +1,4 @@
-//! The drone's filters, as the replay sees them: a user somewhere in a city of 2 km × 2 km.
+//! The drone's filters as workloads for the replay: a user somewhere in a city of 2 km × 2 km.
 
 use kestirim_air_to_ground::{Channel, Environment, Measurement};
 use kestirim_particle_filter::{Moments, Region, Xoshiro128PlusPlus};
@@ -11,14 +11,14 @@ use crate::four_ranges::Named;
 use crate::replay::Tracker;
 use crate::stream::PathLoss;
 
-/// ARMv6-M, which has no atomic operations: a Cortex-M0 with 16 KiB of RAM.
+/// Whether this is ARMv6-M, which has no atomic operations: a Cortex-M0 with 16 KiB of RAM.
 const SMALL: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
-/// Particles.
+/// The number of particles.
 const PARTICLES: usize = if SMALL { 100 } else { 500 };
 
-/// Wavelength, µm: 2 GHz.
+/// The wavelength, µm: 2 GHz.
 const WAVELENGTH: i32 = 150_000;
-/// Side of the city, µm.
+/// The side of the city, µm.
 const SIDE: i32 = 2_000_000_000;
 
 fn channel<T: Scalar>() -> Channel<T> {
@@ -79,7 +79,7 @@ impl<T: Named> Tracker for Published<T> {
         Class::Update
     }
 
-    /// The mean, and how far the cloud spreads about it.
+    /// The mean, and the spread of the cloud about it.
     fn position(&self) -> [f32; 3] {
         let Some(moments) = self.moments else { fail("a position before the first step") };
         let [x, y] = moments.mean();

@@ -1,4 +1,4 @@
-//! The pedestrian trackers, as the replay sees them.
+//! The pedestrian trackers as workloads for the replay.
 
 use kestirim_pedestrian::{
     Config, Ekf, Estimate, ImuSample, Lite, Navigator, Tracker as Pedestrian,
@@ -10,7 +10,7 @@ use support::Class;
 use crate::replay::Tracker;
 use crate::stream::Sample;
 
-/// What a navigator and its scalar are called in tables.
+/// The names of a navigator and its scalar for tables.
 pub trait Named {
     /// The name of the workload.
     const NAME: &str;
@@ -34,7 +34,7 @@ name! {
     Ekf<Q12_20>: "pedestrian-ekf" "q12.20";
 }
 
-/// A causal tracker of a consumer IMU with the adaptive detector.
+/// A causal tracker with a consumer IMU and the adaptive detector.
 pub struct Walk<T: Scalar, N> {
     tracker: Pedestrian<T, N>,
     position: SVector<T, 3>,

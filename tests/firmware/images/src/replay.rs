@@ -1,19 +1,18 @@
-//! Replays the recorded stream through a tracker, measuring every step and telling the host where
-//! the tracker believes to be.
+//! Replays the recorded stream through a tracker, measuring every step and printing the tracker's position estimates.
 
 use support::{Class, Meter, line, line_of_text};
 
 use crate::stream::{Record, Stream, open};
 
-/// A tracker of any kind and scalar, as the replay sees it.
+/// A tracker of any kind and scalar, as a workload for the replay.
 pub trait Tracker: Default {
-    /// The name of the workload in tables.
+    /// The name of the workload for tables.
     const NAME: &str;
-    /// The name of the scalar in tables: `f32`, `q12.20` …
+    /// The name of the scalar for tables: `f32`, `q12.20` …
     const SCALAR: &str;
-    /// A position is told every so many samples, and after the last.
+    /// The number of samples per reported position; one is also reported after the last sample.
     const SAMPLES_A_POSITION: u32 = 50;
-    /// What the stream holds.
+    /// The type of the stream's records.
     type Record: Record;
     /// A record in the tracker's own scalar.
     type Input;
@@ -21,14 +20,14 @@ pub trait Tracker: Default {
     /// Converts a record. Not measured: a driver would deliver the tracker's scalar.
     fn input(record: &Self::Record) -> Self::Input;
 
-    /// Takes in a record. Measured.
+    /// Processes a record; this is measured.
     fn step(&mut self, input: &Self::Input) -> Class;
 
-    /// Where the tracker believes to be, in metres.
+    /// The position estimate, m.
     fn position(&self) -> [f32; 3];
 }
 
-/// Runs a tracker over the whole stream. Tells the host
+/// Runs a tracker over the whole stream. Prints
 ///
 /// - `name`, `scalar` and `object_bytes` (size of the tracker);
 /// - `position=µs µm µm µm` every [`Tracker::SAMPLES_A_POSITION`] samples and after the last;

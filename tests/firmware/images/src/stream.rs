@@ -1,9 +1,9 @@
-//! The recorded stream, read record by record from the file `stream.bin` in the emulator's working
-//! directory. It is not part of the image, so a new recording needs no new build, is not limited by
-//! the flash of a board and does not count as flash.
+//! The recorded stream, read record by record from the file `stream.bin` in the emulator's working directory. It is not
+//! part of the image, so a new recording needs no new build, is not limited by the flash of a board and does not count
+//! as flash.
 //!
-//! A record is a few words of four bytes, little-endian: microseconds since the previous record
-//! (`u32`), then what was measured.
+//! A record is a few words of four bytes, little-endian: microseconds since the previous record (`u32`), then the
+//! measurements.
 
 use core::marker::PhantomData;
 
@@ -16,12 +16,12 @@ const FILE: &core::ffi::CStr = c"stream.bin";
 const MOST_WORDS: usize = 7;
 const WORD: usize = size_of::<u32>();
 
-/// What was measured at one time.
+/// The measurements at one time.
 pub trait Record: Sized {
-    /// Words of a record, the time among them.
+    /// The number of words of a record, including the time.
     const WORDS: usize;
 
-    /// From the microseconds since the start of the stream and the words after the time; `None` if
+    /// Creates a record from the microseconds since the start of the stream and the words after the time; `None` if
     /// there are too few of them.
     fn new(time_us: u64, words: &[[u8; WORD]]) -> Option<Self>;
 }
@@ -29,11 +29,11 @@ pub trait Record: Sized {
 /// A sample of an inertial sensor, in its own axes: three `f32` and three `f32`.
 #[derive(Clone, Copy)]
 pub struct Sample {
-    /// Microseconds since the start of the stream; the first sample may be later than 0.
+    /// The time since the start of the stream, µs; the first sample may be later than 0.
     pub time_us: u64,
-    /// m/s²; at rest +1 g upwards.
+    /// Specific force, m/s²: +1 g upwards at rest.
     pub specific_force: [f32; 3],
-    /// rad/s.
+    /// Angular rate, rad/s.
     pub angular_rate: [f32; 3],
 }
 
@@ -53,11 +53,11 @@ impl Record for Sample {
 /// A range to one of several anchors: a `u32` and an `f32`.
 #[derive(Clone, Copy)]
 pub struct Range {
-    /// Microseconds since the start of the stream.
+    /// The time since the start of the stream, µs.
     pub time_us: u64,
-    /// Which anchor.
+    /// The number of the anchor.
     pub anchor: u32,
-    /// m.
+    /// The range, m.
     pub range: f32,
 }
 
@@ -73,7 +73,7 @@ impl Record for Range {
 /// Ranges to four anchors at once: four `f32`.
 #[derive(Clone, Copy)]
 pub struct Ranges {
-    /// m.
+    /// The ranges, m.
     pub ranges: [f32; 4],
 }
 
@@ -86,14 +86,14 @@ impl Record for Ranges {
     }
 }
 
-/// A path loss that a drone measured: four `f32`.
+/// A path loss measured by a drone: four `f32`.
 #[derive(Clone, Copy)]
 pub struct PathLoss {
-    /// Where the drone was, m.
+    /// The horizontal position of the drone, m.
     pub place: [f32; 2],
-    /// How high it flew, m.
+    /// The height of the drone, m.
     pub height: f32,
-    /// dB.
+    /// The path loss, dB.
     pub loss: f32,
 }
 
@@ -128,7 +128,7 @@ impl Record for Flight {
     }
 }
 
-/// Opens the file of a stream; fails the image if there is none.
+/// Opens the file of a stream; ends the image with a failure if there is none.
 pub fn open() -> File {
     match File::open(FILE) {
         Ok(file) => file,
@@ -145,7 +145,7 @@ pub struct Stream<'a, R> {
 }
 
 impl<'a, R: Record> Stream<'a, R> {
-    /// The records of [`open`]'s file.
+    /// The records of the file that [`open`] returned.
     #[inline(always)] // Where the file was just opened, the assertion is none.
     pub fn of(file: &'a File) -> Self {
         Self { file: file.as_fd(), time_us: 0, record: PhantomData }
@@ -158,7 +158,7 @@ impl<R: Record> Iterator for Stream<'_, R> {
     fn next(&mut self) -> Option<(u64, R)> {
         let mut bytes = [0; MOST_WORDS * WORD];
         let bytes = bytes.get_mut(..R::WORDS * WORD)?;
-        // Tells how many bytes are missing.
+        // The call returns the number of missing bytes.
         match sys_read_orig(self.file, bytes) {
             Ok(0) => {}
             Ok(missing) if missing == bytes.len() => return None,

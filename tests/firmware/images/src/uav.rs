@@ -1,10 +1,11 @@
-//! An unmanned aeroplane with an airspeed, a pitch rate and a pitch sensor, and the gain that places its
-//! observer's poles, computed by the compiler. The host's tests read this very file.
+//! An unmanned aeroplane with sensors for airspeed, pitch rate and pitch, and the gain that places its observer's
+//! poles, computed at compile time. The host's tests include this file.
 
 use kestirim_luenberger::{Plant, PredictorGains};
 use nalgebra::{Matrix3x4, Matrix4, Matrix4x2, Matrix4x3};
 
-/// States: angle of attack (rad), pitch rate (rad/s), airspeed (m/s), pitch (rad). Plant P2, continuous.
+/// The dynamics of the continuous plant P2; the states are angle of attack (rad), pitch rate (rad/s), airspeed (m/s),
+/// pitch (rad).
 pub const A: Matrix4<f64> = Matrix4::new(
     -1.79,
     1.0,
@@ -23,17 +24,17 @@ pub const A: Matrix4<f64> = Matrix4::new(
     0.0,
     0.0,
 );
-/// Inputs: elevator (rad), throttle.
+/// The input matrix; the inputs are elevator (rad) and throttle.
 pub const B: Matrix4x2<f64> = Matrix4x2::new(0.3, -0.158, -100.0, -3.0, 0.3, 45.0, 0.0, 0.0);
-/// Outputs: pitch rate, airspeed, pitch.
+/// The output matrix; the outputs are pitch rate, airspeed and pitch.
 pub const C: Matrix3x4<f64> =
     Matrix3x4::new(0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
 /// Poles of the observer, 1/s.
 pub const POLES: [f64; 4] = [-3.0, -3.5, -4.0, -4.5];
-/// Where the observer starts.
+/// The initial state of the observer.
 pub const START: [f32; 4] = [0.1, 0.1, 35.0, 0.4];
 
-/// The plant over an interval (s) with held inputs, by the series of the exponential.
+/// The discrete plant over an interval (s) with held inputs, by the series of the exponential.
 pub const fn plant(interval: f64) -> Plant<4, 2, 3> {
     let (mut a, mut b) =
         (Matrix4::new(1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.), B);
@@ -53,10 +54,10 @@ pub const fn plant(interval: f64) -> Plant<4, 2, 3> {
     Plant { a, b, c: C }
 }
 
-/// The gain L of the predictor.
+/// The predictor gain L.
 ///
-/// Only the first column of A − L C is given by the plant. The other three are chosen so that pitch rate
-/// and angle of attack make a pair of poles, and airspeed and pitch follow with one each.
+/// Only the first column of A − L C is given by the plant. The other three are chosen so that pitch rate and angle of
+/// attack form a pair of poles, and airspeed and pitch have one pole each.
 pub const fn gain(plant: &Plant<4, 2, 3>, interval: f64) -> Matrix4x3<f64> {
     let [p0, p1, p2, p3] = [
         exp(POLES[0] * interval),
@@ -89,7 +90,7 @@ pub const fn gains(interval: f64) -> PredictorGains<4, 2, 3> {
     PredictorGains::new(&plant, &gain(&plant, interval))
 }
 
-/// eˣ of a small x, by its series.
+/// The exponential eˣ of a small x, by its series.
 pub const fn exp(x: f64) -> f64 {
     let (mut sum, mut term) = (1.0, 1.0);
     let mut order = 1;

@@ -1,5 +1,5 @@
-//! The tracker of ultra-wideband ranges, as the replay sees it: four or eight calibrated anchors along the
-//! walls of a room of 10 m × 8 m.
+//! The tracker of ultra-wideband ranges as a workload for the replay: four or eight calibrated anchors along the walls
+//! of a room of 10 m × 8 m.
 
 use kestirim_scalar::Scalar;
 use kestirim_uwb_tracker::{Anchor, Config, Outcome, RangeSample, Tracker as Uwb};
@@ -12,7 +12,7 @@ use crate::stream::Range;
 
 /// Height of the tag, m.
 const HEIGHT: f64 = 1.0;
-/// Where the anchors are, dm; the corners come first.
+/// The positions of the anchors, dm; the corners come first.
 const ANCHORS: [[i32; 3]; 8] = [
     [0, 0, 25],
     [100, 0, 20],
@@ -66,7 +66,7 @@ impl<T: Named, const D: usize, const N: usize, const A: usize> Tracker for Room<
         }
     }
 
-    /// An epoch begins with anchor 0: its range costs a prediction as well.
+    /// Processes a range. An epoch begins with anchor 0: its range also costs a prediction.
     #[inline(always)]
     fn step(&mut self, sample: &RangeSample<T>) -> Class {
         match self.tracker.range(sample).map(|report| report.outcome) {

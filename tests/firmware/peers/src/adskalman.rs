@@ -1,5 +1,5 @@
-//! [`adskalman`]: a linear filter by trait objects of nalgebra matrices; a measurement model may
-//! predict its observation itself, which makes it an extended one.
+//! [`adskalman`]: a linear filter with trait objects of nalgebra matrices; a measurement model may predict its
+//! observation itself, which makes the filter an extended one.
 
 use adskalman::{
     CovarianceUpdateMethod, ObservationModel, StateAndCovariance, TransitionModelLinearNoControl,
@@ -32,7 +32,7 @@ impl TransitionModelLinearNoControl<f32, U4> for Motion {
     }
 }
 
-/// A range, linearised where the estimate is.
+/// A range, linearised at the estimate.
 struct Range {
     h: Matrix1x4<f32>,
     h_transposed: Matrix4x1<f32>,
@@ -58,7 +58,7 @@ impl ObservationModel<f32, U4, U1> for Range {
     }
 }
 
-/// The common scenario.
+/// The common scenario with `adskalman`.
 pub struct Adskalman {
     scenario: Scenario<f32>,
     motion: Motion,

@@ -1,4 +1,4 @@
-//! [`kfilter`]: nalgebra matrices; an extended filter by a measurement of one's own.
+//! [`kfilter`]: nalgebra matrices; an extended filter with a user-defined measurement.
 
 use images::four_ranges::{Scenario, transition};
 use images::replay::Tracker;
@@ -9,7 +9,7 @@ use kfilter::{KalmanFilter, KalmanLinearNoInput, KalmanPredict, KalmanUpdate};
 use nalgebra_034::{Matrix1, Matrix1x4, Matrix4, Matrix4x1, Vector1, Vector4};
 use support::Class;
 
-/// A range, linearised where the estimate is.
+/// A range, linearised at the estimate.
 struct Range {
     h: Matrix1x4<f32>,
     h_transposed: Matrix4x1<f32>,
@@ -46,7 +46,7 @@ impl LinearisableMeasurement<f32, 4, 1> for Range {
     }
 }
 
-/// The common scenario.
+/// The common scenario with `kfilter`.
 pub struct Kfilter {
     scenario: Scenario<f32>,
     filter: KalmanLinearNoInput<f32, 4>,

@@ -1,6 +1,6 @@
-//! The common scenario with the filters of other crates, for comparison: the same stream, the same
-//! steps, the same expected ranges as [`images::four_ranges::Ekf`]. Only the filter is theirs, used as
-//! its documentation shows, in the cheapest form that it offers.
+//! The common scenario with the filters of other crates, for comparison: the same stream, steps and expected ranges as
+//! [`images::four_ranges::Ekf`]. Only the filter is theirs, used as its documentation shows, in the cheapest form that
+//! it offers.
 
 #![no_std]
 

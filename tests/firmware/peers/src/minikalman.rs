@@ -1,5 +1,5 @@
-//! [`minikalman`]: row-major matrices in buffers of one's own, in floating or fixed point; its extended
-//! filter takes the state's motion and the expected measurement as closures.
+//! [`minikalman`]: row-major matrices in user-supplied buffers, in floating or fixed point; its extended filter takes
+//! the state transition and the expected measurement as closures.
 
 use fixed::types::I16F16;
 use images::four_ranges::{Scenario, transition};
@@ -17,17 +17,17 @@ use minikalman::matrix::{
 use minikalman::prelude::ObservationMatrixMut;
 use support::Class;
 
-/// A number of theirs, and ours of the same format, in which ranges are expected.
+/// A number type of `minikalman`, and ours of the same format, in which the expected ranges are computed.
 pub trait Number: MatrixDataType + Default {
-    /// Ours.
+    /// Our type of the same format.
     type Ours: Scalar;
-    /// The name in tables.
+    /// The name for tables.
     const NAME: &str;
 
-    /// From ours, bit for bit.
+    /// Converts from our type, bit for bit.
     fn from_ours(ours: Self::Ours) -> Self;
 
-    /// To ours, bit for bit.
+    /// Converts to our type, bit for bit.
     fn to_ours(self) -> Self::Ours;
 }
 
@@ -93,7 +93,7 @@ type Observation<T> = ExtendedObservation<
     TemporaryKHPMatrixBuffer<4, T, Square<T>>,
 >;
 
-/// The common scenario.
+/// The common scenario with `minikalman`.
 pub struct Minikalman<T: Number> {
     scenario: Scenario<T::Ours>,
     interval: T,

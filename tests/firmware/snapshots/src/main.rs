@@ -1,8 +1,8 @@
-//! Estimators that slept on the host wake here, go on with the rest of their streams, and sleep again.
+//! Restores estimators that were stored on the host, continues with the rest of their streams, and stores them again.
 //!
-//! `stream.bin` is a row of parts: a part is its kind, a snapshot and the samples that are left, then an empty record; a
-//! record is its length, of four bytes, and its bytes. Tells the host, a line a part: `woken=` kind, number of samples, a
-//! digest of all that was estimated after each of them, length and digest of the snapshot in the end.
+//! `stream.bin` is a sequence of parts: a part is its kind, a snapshot and the remaining samples, then an empty record;
+//! a record is its length, of four bytes, and its bytes. Prints one line a part: `woken=` kind, number of samples, a
+//! digest of all estimates after each of them, length and digest of the final snapshot.
 
 #![no_std]
 #![no_main]
@@ -21,10 +21,10 @@ use semihosting::io::Read;
 use support::{fail, image, line};
 use systems::{Digest, Drawing, SATELLITES, Sample, Sleeper};
 
-/// The largest snapshot, bytes.
+/// The size of the largest snapshot, bytes.
 const ROOM: usize = 16 * 1024;
 
-/// The stream, read piece by piece.
+/// The stream, read record by record.
 struct Records {
     file: File,
     bytes: [u8; ROOM],
@@ -44,7 +44,7 @@ impl Records {
         true
     }
 
-    /// The next record, or none at the end of the stream.
+    /// The next record; `None` at the end of the stream.
     fn next(&mut self) -> Option<&[u8]> {
         if !self.fill(4) {
             return None;
@@ -57,7 +57,7 @@ impl Records {
     }
 }
 
-/// The rest of a part.
+/// Processes the rest of a part.
 #[inline(never)]
 fn wake<E: Sleeper>(kind: u8, records: &mut Records) {
     let Some(snapshot) = records.next() else { fail("no snapshot") };

@@ -1,4 +1,5 @@
-//! Estimators that sleep, one or more a system, and what they are fed with. The host's tests read this very file.
+//! Estimators to be stored and restored, one or more for each system, and their samples. The host's tests include this
+//! file.
 
 use heapless::Vec;
 use kestirim_air_to_ground::Measurement;
@@ -18,49 +19,49 @@ use nalgebra::SVector;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-/// Satellites of an epoch at most.
+/// The largest number of satellites in an epoch.
 pub const SATELLITES: usize = 12;
 
-/// What an estimator is fed with.
+/// A sample for any of the estimators.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[allow(clippy::large_enum_variant, reason = "nothing to box with where there is no allocator")]
 pub enum Sample {
-    /// µs, m/s² and rad/s.
+    /// An inertial sample: time (µs), specific force (m/s²) and angular rate (rad/s).
     Inertial(u64, [f32; 3], [f32; 3]),
-    /// µs, anchor and m.
+    /// A range: time (µs), anchor and range (m).
     Range(u64, u32, f32),
-    /// µs, m/s and rad/s.
+    /// A wheel sample: time (µs), speed (m/s) and turn rate (rad/s).
     Wheels(u64, f32, f32),
-    /// Drone x, y, height (m) and path loss (dB), one a second.
+    /// A path loss: the drone's x, y and height (m) and the loss (dB), one a second.
     PathLoss([f32; 4]),
-    /// µs, inputs and outputs of an aeroplane.
+    /// A sample of a flight: time (µs), inputs and outputs of an aeroplane.
     Flight(i64, [f64; 2], [f64; 3]),
-    /// When, and what of each satellite: its number, codes (m), phases (cycles) and itself.
+    /// An epoch: its time, and for each satellite its number, codes (m), phases (cycles) and state.
     Epoch(GpsTime, Vec<(u8, [f64; 2], [f64; 2], SatelliteState), SATELLITES>),
 }
 
-/// An estimator that can be stored, and told apart from another by what it says after each sample.
+/// An estimator that can be stored, and whose estimates after each sample have a digest.
 pub trait Sleeper: Layout + Serialize + DeserializeOwned {
-    /// Takes in a sample, and answers with a number of all that is estimated then.
+    /// Processes a sample, and returns a digest of all estimates after it.
     fn take(&mut self, sample: &Sample) -> u64;
 }
 
-/// A number of many: two lists of them that differ in a bit have different ones (FNV-1a, Fowler, Noll and Vo 1991).
+/// A digest of a list of numbers, which differs for lists that differ in a bit (FNV-1a, Fowler, Noll and Vo 1991).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Digest(pub u64);
 
 impl Digest {
-    /// Of nothing yet.
+    /// The digest of an empty list.
     pub const NONE: Self = Self(0xcbf2_9ce4_8422_2325);
 
-    /// With one more.
+    /// The digest with one more number.
     pub fn and(self, bits: u64) -> Self {
         let step =
             |digest: u64, byte: &u8| (digest ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
         Self(bits.to_le_bytes().iter().fold(self.0, step))
     }
 
-    /// With these.
+    /// The digest with these numbers added.
     pub fn all<T: Scalar>(self, numbers: &[T]) -> Self {
         numbers.iter().fold(self, |digest, number| digest.and(number.to_f64().to_bits()))
     }
@@ -125,7 +126,7 @@ impl<T, const D: usize, const N: usize, const A: usize> Sleeper for PublishedTra
 where
     T: Scalar + Serialize + DeserializeOwned,
 {
-    /// An epoch ends with the last anchor.
+    /// Processes a range. An epoch ends with the last anchor.
     fn take(&mut self, sample: &Sample) -> u64 {
         let Some(sample) = range::<T>(sample) else { return 0 };
         let said = Digest::NONE.and(u64::from(self.range(&sample).is_ok()));
@@ -147,12 +148,12 @@ where
     }
 }
 
-/// An estimator that draws numbers sleeps with what draws them.
+/// An estimator that draws random numbers, stored together with its generator.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Drawing<E> {
-    /// It.
+    /// The estimator.
     pub estimator: E,
-    /// What draws.
+    /// The random generator.
     #[serde(with = "kestirim_particle_filter::generator")]
     pub rng: Xoshiro128PlusPlus,
 }

@@ -1,4 +1,4 @@
-//! How an image begins and ends.
+//! The beginning and end of an image.
 
 use core::panic::PanicInfo;
 
@@ -6,8 +6,8 @@ use semihosting::process;
 
 use crate::line::{line, line_of_text};
 
-/// Makes a bootable image of `$run`, a `fn()`: the run-time crate of either processor family
-/// initialises memory and calls the symbol `main`.
+/// Makes a bootable image of `$run`, a `fn()`: the run-time crate of either processor family initialises memory and
+/// calls the symbol `main`.
 #[macro_export]
 macro_rules! image {
     ($run:path) => {
@@ -20,19 +20,19 @@ macro_rules! image {
     };
 }
 
-/// Ends the emulation: all went well.
+/// Ends the emulation successfully.
 pub fn exit() -> ! {
     process::exit(0)
 }
 
-/// Tells the host `failed=reason` and ends the emulation as a failure.
+/// Prints `failed=reason` and ends the emulation as a failure.
 pub fn fail(reason: &str) -> ! {
     line_of_text("failed", reason);
     process::exit(1)
 }
 
-/// A panic is a failure that names its place. (Its message is left out: formatting would cost more
-/// flash than most workloads.)
+/// Reports the location of a panic as a failure. (The message is left out: formatting would cost more flash than most
+/// workloads.)
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
     if let Some(place) = info.location() {
@@ -42,7 +42,7 @@ fn panic(info: &PanicInfo) -> ! {
     fail("panic")
 }
 
-/// A fault of the processor, by the name that `cortex-m-rt` looks for.
+/// The handler for processor faults, under the name that `cortex-m-rt` looks for.
 #[cfg(target_arch = "arm")]
 #[allow(unsafe_code)] // Overrides the weak default, which would spin until the host's patience ends.
 #[unsafe(export_name = "HardFault")]
@@ -50,7 +50,7 @@ extern "C" fn hard_fault() -> ! {
     fail("hard fault")
 }
 
-/// A fault of the processor, by the name that `riscv-rt` looks for.
+/// The handler for processor faults, under the name that `riscv-rt` looks for.
 #[cfg(target_arch = "riscv32")]
 #[allow(unsafe_code)] // Overrides the weak default, which would spin until the host's patience ends.
 #[unsafe(export_name = "ExceptionHandler")]

@@ -1,9 +1,9 @@
-//! Code whose cost is known beforehand: what the meter is checked with.
+//! Code of known cost, with which the meter is checked.
 
 use core::arch::asm;
 use core::hint::black_box;
 
-/// Exactly one thousand instructions.
+/// Executes exactly one thousand instructions.
 #[inline(always)]
 pub fn thousand_nops() {
     #[allow(unsafe_code)] // Does nothing.
@@ -12,7 +12,7 @@ pub fn thousand_nops() {
     }
 }
 
-/// Exactly `2 · turns` instructions and those that load `turns`; `turns` must not be 0.
+/// Executes exactly `2 · turns` instructions and those that load `turns`; `turns` must not be 0.
 #[inline(always)]
 pub fn spin(turns: u32) {
     #[allow(unsafe_code)] // Counts a register down.
@@ -24,7 +24,7 @@ pub fn spin(turns: u32) {
     }
 }
 
-/// Needs `BYTES` of stack and a little more.
+/// Uses `BYTES` of stack and a little more.
 #[inline(never)]
 pub fn use_stack<const BYTES: usize>() {
     let mut bytes = [0_u8; BYTES];

@@ -1,12 +1,12 @@
-//! What every image stands on, the same on a Cortex-M0, a Cortex-M4F and an RV32IMC:
+//! The common base of the images on a Cortex-M0, a Cortex-M4F and an RV32IMC:
 //!
 //! - [`image!`] turns a function into a bootable image that ends QEMU when it returns;
 //! - [`Meter`] measures steps: instructions by class of step, and peak stack;
-//! - [`line`] tells the host `key=value`;
-//! - [`known`] is code whose cost is known beforehand, to check the meter with.
+//! - [`line`] prints `key=value` for the host;
+//! - [`known`] is code of known cost, to check the meter with.
 //!
-//! The only `unsafe` code of the images lives here, where hardware demands it. Nothing here can
-//! panic or formats with `core::fmt`, so that panic symbols in an image are the workload's own.
+//! The only `unsafe` code of the images is here, where the hardware requires it. Nothing here can panic or formats with
+//! `core::fmt`, so that panic symbols in an image are the workload's own.
 
 #![no_std]
 

@@ -1,20 +1,20 @@
-//! Lines of text for the host: `key=number number …` or `key=text`, one semihosting call a line.
+//! Lines of text for the host: `key=number number …` or `key=text`, one semihosting call for each line.
 
 use core::ffi::CStr;
 
 use semihosting::sys::arm_compat::sys_write0;
 
-/// The longest line; what does not fit is cut off.
+/// The length of the longest line; the rest is cut off.
 const CAPACITY: usize = 160;
 
-/// Tells the host `key=numbers`, the numbers in decimal with a blank between two.
+/// Prints `key=numbers`, the numbers in decimal and separated by blanks.
 pub fn line(key: &str, numbers: &[i64]) {
     let mut text = Text::new();
     text.push_all(key.as_bytes());
     numbered(text, numbers);
 }
 
-/// Tells the host `group.key=numbers`.
+/// Prints `group.key=numbers`.
 pub(crate) fn line_of_group(group: &str, key: &str, numbers: &[i64]) {
     let mut text = Text::new();
     text.push_all(group.as_bytes());
@@ -23,7 +23,7 @@ pub(crate) fn line_of_group(group: &str, key: &str, numbers: &[i64]) {
     numbered(text, numbers);
 }
 
-/// Tells the host `key=value`.
+/// Prints `key=value`.
 pub fn line_of_text(key: &str, value: &str) {
     let mut text = Text::new();
     text.push_all(key.as_bytes());
@@ -44,7 +44,7 @@ fn numbered(mut text: Text, numbers: &[i64]) {
     text.send();
 }
 
-/// A line in the making. Zeros follow what has been written, as the semihosting call wants it.
+/// A line under construction. What has been written is followed by zeros, as the semihosting call requires.
 struct Text {
     bytes: [u8; CAPACITY],
     length: usize,
@@ -56,7 +56,7 @@ impl Text {
     }
 
     fn push(&mut self, byte: u8) {
-        // Two places stay free: the line feed and the final zero.
+        // Two places are reserved for the line feed and the final zero.
         if self.length < CAPACITY - 2 {
             self.put(byte);
         }
@@ -79,7 +79,7 @@ impl Text {
         if number < 0 {
             self.push(b'-');
         }
-        // Digits come last first: 19 of them are enough for an i64.
+        // Digits are produced from the last to the first: 19 of them are enough for an i64.
         let mut digits = [b'0'; 20];
         let mut rest = number.unsigned_abs();
         let mut used = 0;

@@ -1,4 +1,4 @@
-//! Measures steps.
+//! Measures the costs of steps.
 
 use core::hint::black_box;
 
@@ -8,18 +8,18 @@ use crate::line::line_of_group;
 use crate::stack::Painted;
 use crate::statistics::Statistics;
 
-/// How deep into the stack a step of an estimator reaches at most, in bytes. All of it is painted for
-/// every step, so more takes longer.
+/// The largest depth of the stack that a step of an estimator uses, bytes. All of it is painted for every step, so a
+/// larger value takes longer.
 const REACH: usize = 8 * 1024;
 
-/// What kind of step it was: each kind has its own statistics.
+/// The class of a step; each class has its own statistics.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Class {
-    /// Time went on, no measurement was taken in.
+    /// Time advanced, without a measurement.
     Predict,
-    /// A measurement was taken in.
+    /// A measurement was processed.
     Update,
-    /// The step answered with an error.
+    /// The step returned an error.
     Rejected,
     /// There was no estimate before the step.
     Start,
@@ -34,14 +34,14 @@ impl Class {
     ];
 }
 
-/// Instructions and stack of one call.
+/// The instructions and stack of one call.
 #[derive(Clone, Copy)]
 struct Cost {
     instructions: u32,
     stack: u32,
 }
 
-/// Measures steps; an empty step costs nothing.
+/// A meter for steps, for which an empty step costs nothing.
 pub struct Meter {
     counter: Counter,
     reach: usize,
@@ -57,12 +57,12 @@ impl Default for Meter {
 }
 
 impl Meter {
-    /// Measures the empty step, to subtract it from all that follow.
+    /// Creates a meter and measures the empty step, which is subtracted from all that follow.
     pub fn new() -> Self {
         Self::reaching(REACH)
     }
 
-    /// The same, for steps that reach so many bytes into the stack.
+    /// Creates a meter for steps that use up to `reach` bytes of stack.
     pub fn reaching(reach: usize) -> Self {
         let mut counter = Counter::new();
         let (_, empty) = cost_of(&mut counter, reach, &mut || Class::Predict);
@@ -71,7 +71,7 @@ impl Meter {
 
     /// Runs and measures one step.
     ///
-    /// Fails the image if the step was too long for the counter or too deep for the paint.
+    /// Ends the image with a failure if the step was too long for the counter or too deep for the paint.
     pub fn measure(&mut self, mut step: impl FnMut() -> Class) {
         let (class, cost) = cost_of(&mut self.counter, self.reach, &mut step);
         if let Some(statistics) = self.classes.get_mut(class as usize) {
@@ -80,8 +80,8 @@ impl Meter {
         self.stack = self.stack.max(cost.stack.saturating_sub(self.empty.stack));
     }
 
-    /// Tells the host, for each class that occurred, `name.class=steps min max total`, and
-    /// `name.stack=bytes` and `name.empty=instructions stack` (what was subtracted).
+    /// Prints, for each class that occurred, `name.class=steps min max total`, and `name.stack=bytes` and
+    /// `name.empty=instructions stack` (what was subtracted).
     pub fn report(&self, name: &str) {
         for ((_, class), statistics) in Class::ALL.iter().zip(&self.classes) {
             if let Some(summary) = statistics.summary() {
@@ -93,8 +93,8 @@ impl Meter {
     }
 }
 
-/// A step behind a reference. (`dyn FnMut` would carry the step's code twice: its table of methods
-/// has an entry for `FnOnce`, too, and the flash of an image would be reported too large.)
+/// A step behind a reference. (`dyn FnMut` would contain the step's code twice: its vtable also has an entry for
+/// `FnOnce`, and the flash of an image would be reported too large.)
 trait Step {
     fn run(&mut self) -> Class;
 }
@@ -105,8 +105,8 @@ impl<F: FnMut() -> Class> Step for F {
     }
 }
 
-/// The one place where steps are called, whichever step it is: behind a reference that the optimiser
-/// cannot see through, so that every call costs exactly the same around the step itself.
+/// The single place where all steps are called, behind a reference that the optimiser cannot see through, so that every
+/// call has exactly the same overhead around the step itself.
 #[inline(never)]
 fn cost_of(counter: &mut Counter, reach: usize, step: &mut dyn Step) -> (Class, Cost) {
     let step = black_box(step);

@@ -1,6 +1,6 @@
-//! How deep a call reaches into the stack: paint the free stack, call, look how much paint is left.
+//! Measures the stack use of a call: paint the free stack, call, and look how much paint is left.
 //!
-//! A frame whose lowest words are reserved but never written shows too small by those words.
+//! A frame whose lowest words are reserved but never written appears too small by those words.
 
 use core::arch::asm;
 use core::ptr;
@@ -31,7 +31,7 @@ impl Painted {
         Self { bottom, top }
     }
 
-    /// Bytes of the paint that have been used since, counted from the top; `None` if all of them.
+    /// The number of painted bytes used since then, counted from the top; `None` if all of them were.
     #[inline(always)]
     pub(crate) fn used(&self) -> Option<u32> {
         let is_clean = |address: &usize| {
@@ -45,7 +45,7 @@ impl Painted {
     }
 }
 
-/// Where the static variables end, by the name that both run-time crates give it.
+/// The end of the static variables, under the name that both run-time crates give it.
 #[inline(always)]
 fn end_of_statics() -> usize {
     #[allow(unsafe_code)] // Declares a symbol of the linker script; only its address is taken.
@@ -55,7 +55,7 @@ fn end_of_statics() -> usize {
     (&raw const __sheap).expose_provenance()
 }
 
-/// The stack pointer of the function this is inlined into.
+/// The stack pointer of the function that this is inlined into.
 #[inline(always)]
 fn stack_pointer() -> usize {
     let address: usize;

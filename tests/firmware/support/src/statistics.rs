@@ -1,6 +1,6 @@
-//! Count, smallest, largest and sum of the costs of one class of steps.
+//! The count, minimum, maximum and sum of the costs of one class of steps.
 
-/// Instructions of the steps of one class. The host divides for the mean.
+/// The instruction counts of the steps of one class. The host computes the mean.
 #[derive(Clone, Copy)]
 pub(crate) struct Statistics {
     steps: u32,
@@ -10,10 +10,10 @@ pub(crate) struct Statistics {
 }
 
 impl Statistics {
-    /// No step yet.
+    /// The statistics before the first step.
     pub(crate) const EMPTY: Self = Self { steps: 0, min: u32::MAX, max: 0, total: 0 };
 
-    /// Takes in a step.
+    /// Adds a step.
     pub(crate) fn add(&mut self, instructions: u32) {
         self.steps = self.steps.wrapping_add(1);
         self.min = self.min.min(instructions);

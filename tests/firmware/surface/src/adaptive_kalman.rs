@@ -1,4 +1,4 @@
-//! Everything of `kestirim-adaptive-kalman`.
+//! Calls everything of `kestirim-adaptive-kalman`.
 
 use kestirim_adaptive_kalman::{
     AdaptiveKalman, Error, Learning, MeasurementNoise, ProcessNoise, PublishedAdaptiveKalman,
@@ -82,7 +82,7 @@ fn all_of<T: Scalar>() {
     ]);
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([all_of::<f32>, all_of::<Q12_20>]);
 }

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-air-to-ground`.
+//! Calls everything of `kestirim-air-to-ground`.
 
 use kestirim_air_to_ground::{
     Channel, Contaminated, Environment, FreeSpace, GroundFit, Heading, LevelPrior, Likelihood,
@@ -99,7 +99,7 @@ fn all_of<T: Scalar>() {
     call_each([environments::<T>, channels::<T>, free_space::<T>, open_ground::<T>, rotors::<T>]);
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([all_of::<f32>, all_of::<Q16_16>]);
 }

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-arithmetic`.
+//! Calls everything of `kestirim-arithmetic`.
 
 use kestirim_arithmetic::sqrt;
 use kestirim_arithmetic::vectors::{Kernel, Vectors};
@@ -9,7 +9,7 @@ fn roots() {
     keep(sqrt(any(2.0)));
 }
 
-/// Anything to be run on vectors.
+/// Arbitrary work to be run on vectors.
 struct Work;
 
 impl Kernel for Work {
@@ -26,7 +26,7 @@ fn vectors() {
     keep(Kernel::run(Work));
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([roots, vectors]);
 }

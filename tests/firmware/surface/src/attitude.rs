@@ -1,4 +1,4 @@
-//! Everything of `kestirim-attitude`.
+//! Calls everything of `kestirim-attitude`.
 
 use kestirim_attitude::{Ahrs, Gains, Orientation};
 use kestirim_scalar::{Q12_20, Scalar};
@@ -38,7 +38,7 @@ fn all_of<T: Scalar>() {
     call_each([orientations::<T>, references::<T>]);
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([all_of::<f32>, all_of::<Q12_20>]);
 }

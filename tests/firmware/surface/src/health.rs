@@ -1,4 +1,4 @@
-//! Everything of `kestirim-health`.
+//! Calls everything of `kestirim-health`.
 
 use kestirim_health::{Health, Reason, State};
 
@@ -24,7 +24,7 @@ fn healths() {
     Health::reasons(both).for_each(keep);
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([words, healths]);
 }

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-imu-calibration`.
+//! Calls everything of `kestirim-imu-calibration`.
 
 use kestirim_imu_calibration::{
     AccelerometerModel, Calibration, Gyroscope, Magnetometer, Pose, Poses, Triad, Turn,
@@ -72,7 +72,7 @@ fn all_of<T: Scalar>() {
     call_each([corrections::<T>, poses::<T, 1>, poses::<T, 16>, turns::<T>, iron::<T>]);
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([all_of::<f32>, all_of::<Q12_20>]);
 }

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-integer-ambiguity`.
+//! Calls everything of `kestirim-integer-ambiguity`.
 
 use kestirim_integer_ambiguity::{Decorrelated, Error, Fix};
 
@@ -18,7 +18,7 @@ fn ambiguities<const N: usize>() {
     }
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([ambiguities::<1>, ambiguities::<5>, ambiguities::<12>]);
 }

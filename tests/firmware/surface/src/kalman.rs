@@ -1,4 +1,4 @@
-//! Everything of `kestirim-kalman`.
+//! Calls everything of `kestirim-kalman`.
 
 use kestirim_kalman::{
     BlockInnovation, ConstantVelocity, Covariance, Driven, Gate, Gaussian, Innovation, Linear,
@@ -128,7 +128,7 @@ fn all_of<T: Scalar>() {
     ]);
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([all_of::<f32>, all_of::<Q12_20>]);
 }

@@ -1,5 +1,5 @@
-//! Everything of `kestirim-luenberger` that a target runs. Gains are made of doubles when the program is compiled: see
-//! `surface-luenberger-f64`.
+//! Calls everything of `kestirim-luenberger` that runs on a target. Gains are computed in double precision at compile
+//! time: see `surface-luenberger-f64`.
 
 use kestirim_luenberger::{
     CurrentGains, CurrentObserver, DisturbanceGains, DisturbanceObserver, Plant, Predictor,
@@ -25,7 +25,7 @@ impl<const N: usize, const M: usize, const P: usize, const D: usize> Gains<N, M,
         DisturbanceGains::new(&Self::PLANT, &filled(), &filled(), &filled(), &filled());
 }
 
-/// The last two of the states are measured.
+/// Gains of a reduced observer with the last two states measured.
 const fn reduced<const N: usize, const M: usize, const R: usize>() -> ReducedGains<N, M, 2, R> {
     match ReducedGains::new(&filled(), &filled(), &[N - 1, N - 2], &filled()) {
         Ok(gains) => gains,
@@ -90,7 +90,7 @@ fn all_of<T: Scalar>() {
     ]);
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([all_of::<f32>, all_of::<Q16_16>]);
 }

@@ -1,4 +1,4 @@
-//! The gains of `kestirim-luenberger`, made at run time: in double precision, as the compiler does otherwise.
+//! Computes the gains of `kestirim-luenberger` at run time, in double precision; otherwise the compiler computes them.
 
 use kestirim_luenberger::{CurrentGains, DisturbanceGains, Plant, PredictorGains, ReducedGains};
 
@@ -22,7 +22,7 @@ fn reduced<const N: usize, const M: usize, const P: usize, const R: usize>() {
     ));
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([
         full::<4, 2, 3, 1>,

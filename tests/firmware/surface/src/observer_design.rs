@@ -1,4 +1,4 @@
-//! Everything of `kestirim-observer-design`.
+//! Calls everything of `kestirim-observer-design`.
 
 use kestirim_observer_design::{
     Complex, Placement, Response, StateSpace, controllability, discrete_noise, eigenvalues,
@@ -52,7 +52,7 @@ fn responds<const N: usize, const M: usize, const P: usize>() {
     keep(<Response<N, P> as Iterator>::next(any(&mut response)));
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([
         discretises::<4, 2>,

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-particle-filter`.
+//! Calls everything of `kestirim-particle-filter`.
 
 use kestirim_particle_filter::{
     IntegerWeights, Likelihood, Moments, Multinomial, Particles, PointMass, Region, Resample,
@@ -23,13 +23,13 @@ fn start() -> Start {
     one_of([Start::Random, Start::QuasiRandom, Start::Lattice])
 }
 
-/// What a particle's weight depends on.
+/// The weight of a particle.
 fn weight<T: Scalar, const D: usize>(state: [T; D]) -> T {
     keep(state);
     number()
 }
 
-/// The same, inlined.
+/// The weight of a particle, as a `Likelihood`.
 struct Weight;
 
 impl<T: Scalar, const D: usize> Likelihood<T, D> for Weight {
@@ -38,13 +38,13 @@ impl<T: Scalar, const D: usize> Likelihood<T, D> for Weight {
     }
 }
 
-/// Where a particle goes.
+/// The motion of a particle.
 fn moved<T: Scalar, const D: usize, const K: usize>(state: [T; D], noise: [T; K]) -> [T; D] {
     keep((state, noise));
     numbers()
 }
 
-/// What of a particle is wanted.
+/// The part of a particle's state that is requested.
 fn shown<T: Scalar, const D: usize, const K: usize>(state: [T; D]) -> [T; K] {
     keep(state);
     numbers()
@@ -153,7 +153,7 @@ fn all_of<T: Scalar>() {
     ]);
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([all_of::<f32>, all_of::<Q16_16>]);
 }

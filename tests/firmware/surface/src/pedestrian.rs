@@ -1,4 +1,4 @@
-//! Everything of `kestirim-pedestrian`.
+//! Calls everything of `kestirim-pedestrian`.
 
 use core::fmt::Debug;
 
@@ -158,7 +158,7 @@ fn all_of<T: Scalar>() {
     ]);
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([all_of::<f32>, all_of::<Q12_20>]);
 }

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-robust-kalman`.
+//! Calls everything of `kestirim-robust-kalman`.
 
 use kestirim_kalman::{Covariance, Gaussian, SparseRow};
 use kestirim_robust_kalman::{
@@ -20,7 +20,7 @@ fn descent() -> Descent {
     one_of([Descent::Published, Descent::Squared])
 }
 
-/// Any configuration.
+/// An arbitrary configuration.
 fn robust<T: Scalar>() -> Robust<T> {
     let adaptive = maybe(Adaptive {
         discrepancy: one_of([Discrepancy::Innovation, Discrepancy::Block, Discrepancy::Prediction]),
@@ -106,7 +106,7 @@ fn all_of<T: Scalar>() {
     call_each([presets::<T>, weights::<T>, updates::<T, 4, 2, 4>, updates::<T, 9, 4, 7>]);
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([all_of::<f32>, all_of::<Q12_20>]);
 }

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-scalar` in single precision and in fixed point, but for the conversions from and to
+//! Calls everything of `kestirim-scalar` in single precision and in fixed point, except for the conversions from and to
 //! doubles: see `surface-scalar-f64`.
 
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -75,7 +75,7 @@ fn all_of<T: Scalar>() {
     call_each([functions::<T>, sums::<T, 3>, sums::<T, 9>, arrays::<T>]);
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([
         all_of::<f32>,

@@ -1,4 +1,4 @@
-//! The double precision of `kestirim-scalar`, and the conversions of every scalar from and to it.
+//! Calls the double precision of `kestirim-scalar`, and the conversions of every scalar from and to it.
 
 use kestirim_scalar::{Fixed, Q8_24, Q12_20, Q16_16, Scalar};
 
@@ -35,7 +35,7 @@ fn sums<const N: usize>() {
     keep(<f64 as Scalar>::dot::<N>(&numbers(), &numbers()));
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([
         conversions::<f32>,

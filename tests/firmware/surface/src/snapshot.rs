@@ -1,4 +1,4 @@
-//! Everything of `kestirim-snapshot`, with an estimator of every kind of field.
+//! Calls everything of `kestirim-snapshot`, with an estimator that has every kind of field.
 
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_snapshot::arrays::{count, deserialize, index, serialize};
@@ -81,7 +81,7 @@ fn stored() {
     let stored = any(store(&estimator, &mut page).map(<[u8]>::len));
     keep(header(slice(&page)).ok());
     keep(load::<Estimator>(slice(&page)).ok());
-    // Of too small a buffer, and of one that was spoilt.
+    // Load from a buffer that is too small, and from a damaged one.
     let place = whole::<usize>();
     if let Some(byte) = page.get_mut(place) {
         *byte = whole();
@@ -103,7 +103,7 @@ fn numbers_of<T: Scalar>() {
     keep(number::<T>());
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([stored, names, numbers_of::<f32>, numbers_of::<Q12_20>]);
 }

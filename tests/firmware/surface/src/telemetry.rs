@@ -1,4 +1,4 @@
-//! Everything of `kestirim-telemetry`.
+//! Calls everything of `kestirim-telemetry`.
 
 use core::convert::Infallible;
 
@@ -10,7 +10,7 @@ use kestirim_telemetry::{
 
 use super::values::{any, call_each, keep, maybe, number, numbers, one_of, rounds, slice, whole};
 
-/// A port that takes everything. (The default `write_all` of `embedded-io` slices, and would panic of a port that
+/// A port that accepts all bytes. (The default `write_all` of `embedded-io` slices, and would panic for a port that
 /// claims to have taken more than it was given.)
 struct Port;
 
@@ -79,7 +79,7 @@ fn transmitters() {
     keep(DeviceTransmitter::release(transmitter).flush());
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([frames, transmitters]);
 }

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-uav-estimator`.
+//! Calls everything of `kestirim-uav-estimator`.
 
 use kestirim_observer_design::{Complex, Discrete};
 use kestirim_scalar::{Q16_16, Scalar};
@@ -33,7 +33,7 @@ fn measured<const P: usize>() -> [Option<f64>; P] {
     any([(); P].map(|()| option()))
 }
 
-/// Intervals of some microseconds and of any.
+/// A sample after an interval of a few microseconds, or an arbitrary one.
 fn sample<const P: usize>(time_us: &mut i64) -> Sample<P> {
     *time_us = time_us.wrapping_add(whole::<u64>() as i64);
     any(Sample { time_us: *time_us, input: matrix(), measured: measured() })
@@ -190,7 +190,7 @@ fn augmented_flights<T: Scalar>() {
     keep(AugmentedFlight::health(&filter));
 }
 
-/// Of one kind, or of two that do not belong together.
+/// Models of one kind, or of two that do not belong together.
 fn local_models() -> Option<[LocalModel<9, 6, 3>; 2]> {
     let model = augmented_model()?;
     let local =
@@ -249,7 +249,7 @@ fn all_of<T: Scalar>() {
     ]);
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([designs::<3>, designs::<4>, errors, all_of::<f32>, all_of::<f64>, all_of::<Q16_16>]);
 }

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-uav-longitudinal`.
+//! Calls everything of `kestirim-uav-longitudinal`.
 
 use kestirim_uav_longitudinal::{
     Airframe, Descriptor, LateralDerivatives, LongitudinalDerivatives, Stall, StateSpace,
@@ -38,7 +38,7 @@ fn flights() {
     keep(Descriptor::resolve(&any(Descriptor { e: matrix(), a: matrix(), b: matrix() })));
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([plants, flights]);
 }

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-user-locator`.
+//! Calls everything of `kestirim-user-locator`.
 
 use core::fmt::Debug;
 
@@ -215,7 +215,8 @@ fn orbits<T: Scalar>() {
     keep::<Error>(From::from(any(kestirim_particle_filter::Error::NotFinite)));
 }
 
-/// Sizes are the particle filter's, which is called with several; here each is compiled in both number types.
+/// The sizes are those of the particle filter, which is called with several; here each is compiled in both number
+/// types.
 fn all_of<T: Scalar>() {
     call_each([
         locators::<T, 64, 8, 2>,
@@ -227,7 +228,7 @@ fn all_of<T: Scalar>() {
     ]);
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([all_of::<f32>, all_of::<Q16_16>]);
 }

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-uwb-ranging`.
+//! Calls everything of `kestirim-uwb-ranging`.
 
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{
@@ -181,7 +181,7 @@ fn all_of<T: Scalar>() {
     ]);
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([times, all_of::<f32>, all_of::<Q12_20>]);
 }

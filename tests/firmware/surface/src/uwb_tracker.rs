@@ -1,4 +1,4 @@
-//! Everything of `kestirim-uwb-tracker`.
+//! Calls everything of `kestirim-uwb-tracker`.
 
 use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{Room, Solver};
@@ -26,7 +26,7 @@ fn places<T: Scalar>() {
     keep::<[T; 2]>(Config::common_sigmas(&config(), slice(&anchors)));
 }
 
-/// Any configuration.
+/// An arbitrary configuration.
 fn config<T: Scalar>() -> Config<T> {
     let config = any(Config::calibrated(number()));
     any(Config {
@@ -173,7 +173,7 @@ fn all_of<T: Scalar>() {
     ]);
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([all_of::<f32>, all_of::<Q12_20>]);
 }

@@ -1,4 +1,5 @@
-//! Any path losses of a drone, in three number types: refused, or a place that is finite.
+//! Feeds arbitrary path losses to a drone's filter, in three number types: each is refused, or the position stays
+//! finite.
 #![no_main]
 
 use fuzz::number;
@@ -20,7 +21,7 @@ fn feed<T: Scalar>(bytes: &[u8]) -> Result<()> {
         let height = T::from_f64(number(&mut bytes, 1000.0)?);
         let loss = T::from_f64(100.0 + number(&mut bytes, 50.0)?);
         if let Ok(measurement) = Measurement::new(place, height, loss) {
-            // What nothing explains is refused.
+            // A measurement that no point explains is refused.
             let _ = locator.measure(&measurement);
         }
         let moments = locator.moments();

@@ -1,4 +1,4 @@
-//! Any bytes as a log: refused with a sentence, or read.
+//! Reads arbitrary bytes as a log of a flight: they are refused with a sentence, or read.
 #![no_main]
 
 use kestirim_import::{Options, flight};

@@ -1,4 +1,4 @@
-//! Any bytes as observations: RINEX, Compact RINEX, streams of receivers, packed or not.
+//! Reads arbitrary bytes as observations: RINEX, Compact RINEX, receiver streams, compressed or not.
 #![no_main]
 
 use kestirim_gnss_files::{Observations, Text};

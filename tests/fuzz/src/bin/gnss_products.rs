@@ -1,4 +1,4 @@
-//! Any bytes as orbits, clocks, ephemerides, antennas and ocean loading.
+//! Reads arbitrary bytes as orbits, clocks, ephemerides, antennas and ocean loading.
 #![no_main]
 
 use kestirim_gnss_files::{

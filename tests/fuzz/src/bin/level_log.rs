@@ -1,4 +1,4 @@
-//! Any bytes as a log of levels and places: refused with a sentence, read, or no such file.
+//! Reads arbitrary bytes as a log of levels and positions: they are refused with a sentence, read, or not such a file.
 #![no_main]
 
 use kestirim_import::{Options, levels};

@@ -1,4 +1,5 @@
-//! Any samples of a foot, in three number types: refused, or an estimate that is finite.
+//! Feeds arbitrary samples of a foot to the pedestrian filters, in three number types: each is refused, or the estimate
+//! stays finite.
 #![no_main]
 
 use fuzz::{later, number};
@@ -19,7 +20,7 @@ fn samples(bytes: &[u8]) -> Result<Vec<Sample>> {
         for (index, axis) in axes.iter_mut().enumerate() {
             *axis = number(&mut bytes, if index < 3 { 160.0 } else { 35.0 })?;
         }
-        // The same sample several times makes standstills and stalls of few bytes.
+        // Repeating a sample creates standstills and stalls from few bytes.
         for _ in 0..=bytes.arbitrary::<u8>()? {
             samples.push((time_us, axes));
             time_us = time_us.saturating_add(10_000);
@@ -40,11 +41,11 @@ fn feed<T: Scalar>(samples: &[Sample]) {
         for (update, out_of_range) in updates.into_iter().zip(ranges) {
             let Ok(estimate) = update else { continue };
             let mut numbers = estimate.position.iter().chain(estimate.velocity.iter());
-            // A number of fixed point is not finite at the end of its range.
+            // A fixed-point number at the end of its range does not count as finite.
             assert!(out_of_range || numbers.all(|x| x.is_finite()));
         }
     }
-    // Nor is a length that has reached it.
+    // A length that has reached the end of the range does not count as finite either.
     assert!(ekf.warnings().out_of_range || ekf.path_length().is_finite());
     assert!(lite.warnings().out_of_range || lite.path_length().is_finite());
 }

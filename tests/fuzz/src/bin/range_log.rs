@@ -1,4 +1,4 @@
-//! Any bytes as a log of ranges: refused with a sentence, or read.
+//! Reads arbitrary bytes as a log of ranges: they are refused with a sentence, or read.
 #![no_main]
 
 use kestirim_import::{Options, ranging};

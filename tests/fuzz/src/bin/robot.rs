@@ -1,4 +1,5 @@
-//! Any ranges, accelerations and wheels of a tag, in three number types: refused, or an estimate that is finite.
+//! Feeds arbitrary ranges, accelerations and wheel speeds of a tag to the tracker, in three number types: each is
+//! refused, or the estimate stays finite.
 #![no_main]
 
 use fuzz::{later, number};
@@ -17,7 +18,7 @@ fn feed<T: Scalar, const D: usize, const N: usize>(config: Config<T>, bytes: &[u
     let (mut bytes, mut time_us) = (Unstructured::new(bytes), 1_000_000_u64);
     while !bytes.is_empty() {
         time_us = time_us.saturating_add_signed(later(&mut bytes, 25_000)?);
-        // What is refused leaves the tracker as it was.
+        // A refused sample leaves the tracker unchanged.
         let _ = match bytes.arbitrary::<u8>()? {
             0..200 => {
                 let anchor = usize::from(bytes.arbitrary::<u8>()? % 5);

@@ -1,4 +1,5 @@
-//! Any bytes to a receiver: as many frames as it counts, and a frame of either version among them arrives.
+//! Feeds arbitrary bytes to a telemetry receiver: it yields as many frames as it counts, and a frame of either version
+//! among them arrives.
 #![no_main]
 
 use kestirim_telemetry::{CAPACITY, Health, Origin, Receiver, encode, encode_from};

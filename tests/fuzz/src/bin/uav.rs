@@ -1,4 +1,5 @@
-//! Any flight, to filter and observer in three number types: refused, or a state that is finite.
+//! Feeds an arbitrary flight to filter and observer, in three number types: each sample is refused, or the state stays
+//! finite.
 #![no_main]
 
 use fuzz::{later, number};
@@ -31,7 +32,7 @@ fn feed<T: Scalar>(bytes: &[u8]) -> Result<()> {
             }
         }
         let sample = Sample { time_us, input, measured };
-        // What is refused leaves both as they were.
+        // A refused sample leaves both unchanged.
         let (_, _) = (filter.take(&sample), observer.take(&sample));
         let (estimate, sigma) = (filter.filter().estimate(), filter.filter().sigma());
         assert!(estimate.iter().chain(sigma.iter()).all(|x| x.is_finite()));

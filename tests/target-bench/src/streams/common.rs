@@ -1,4 +1,4 @@
-//! The common scenario by which filters are compared.
+//! The common scenario on which filters are compared.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -9,27 +9,27 @@ use serde::Deserialize;
 
 use super::{Encode, record, words};
 
-/// Where the anchors are, m.
+/// The positions of the anchors, m.
 pub const ANCHORS: [[f64; 2]; 4] = [[0.0, 0.0], [10.0, 0.0], [10.0, 8.0], [0.0, 8.0]];
 
-/// Set to 1, absent data is a failure.
+/// The environment variable that makes absent data a failure if it is 1.
 const REQUIRE: &str = "KESTIRIM_REQUIRE_DATA";
 
 /// Ranges to the four anchors, every 0.1 s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Common {
-    /// m.
+    /// The ranges, m.
     pub ranges: Vec<[f64; 4]>,
-    /// Where the tag was, and the states of the filter in double precision, if they are known.
+    /// The true positions of the tag, and the states of the filter in double precision, if they are known.
     pub reference: Option<Reference>,
 }
 
-/// What the scenario's file says of the ranges.
+/// The reference in the scenario's file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
-    /// Where the tag was after each step, m.
+    /// The true position of the tag after each step, m.
     pub truth: Vec<[f64; 2]>,
-    /// Position (m) and velocity (m/s) after each step.
+    /// The position (m) and velocity (m/s) after each step.
     pub states: Vec<[f64; 4]>,
 }
 
@@ -41,8 +41,10 @@ struct File {
 }
 
 impl Common {
-    /// Reads the scenario, which stands beside the repository. Where it is absent, ranges without noise
-    /// along the same path take its place; there is no reference then, and costs that depend on outliers differ.
+    /// Reads the scenario, which is a file beside the repository.
+    ///
+    /// Where it is absent, noise-free ranges along the same path replace it; there is then no reference, and costs that
+    /// depend on outliers differ.
     ///
     /// # Errors
     /// The file is not as expected, or it is absent and `KESTIRIM_REQUIRE_DATA` is 1.

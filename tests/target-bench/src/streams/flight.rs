@@ -1,4 +1,4 @@
-//! An aeroplane's inputs and outputs.
+//! A stream of an aeroplane's inputs and outputs.
 
 use host_sim::random::{normal, stream};
 use kestirim_luenberger::Plant;
@@ -6,7 +6,7 @@ use nalgebra::SVector;
 
 use super::{Encode, record, words};
 
-/// Elevator (rad), throttle, pitch rate (rad/s), airspeed (m/s) and pitch (rad), sample by sample.
+/// Elevator (rad), throttle, pitch rate (rad/s), airspeed (m/s) and pitch (rad) of each sample.
 pub type Flight = [[f32; 5]];
 
 impl Encode for Flight {

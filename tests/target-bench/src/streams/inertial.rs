@@ -1,4 +1,4 @@
-//! An inertial sensor on a foot.
+//! A stream of an inertial sensor on a foot.
 
 use host_sim::random::stream;
 use host_sim::systems::pedestrian;
@@ -10,11 +10,11 @@ use super::{Encode, record, words};
 /// A sample of an inertial sensor, in its own axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Microseconds since the previous sample; of the first one, since the start.
+    /// The time since the previous sample, µs; for the first one, since the start.
     pub elapsed_us: u32,
-    /// m/s²; at rest +1 g upwards.
+    /// Specific force, m/s²: +1 g upwards at rest.
     pub specific_force: [f32; 3],
-    /// rad/s.
+    /// Angular rate, rad/s.
     pub angular_rate: [f32; 3],
 }
 

@@ -1,4 +1,4 @@
-//! Path losses that a drone measures.
+//! A stream of path losses measured by a drone.
 
 use std::f64::consts::TAU;
 
@@ -8,14 +8,14 @@ use rand_core::Rng;
 
 use super::{Encode, record, words};
 
-/// Where the user is, m.
+/// The position of the user, m.
 const USER: [f64; 2] = [1400.0, 700.0];
-/// How high the drone flies, m.
+/// The height of the drone, m.
 const HEIGHT: f64 = 500.0;
-/// m.
+/// The wavelength, m.
 const WAVELENGTH: f64 = 0.15;
 
-/// Drone x, y, height (m) and path loss (dB), one a second.
+/// The drone's x, y and height (m) and the path loss (dB), one record a second.
 pub type Records = [[f32; 4]];
 
 impl Encode for Records {
@@ -24,7 +24,7 @@ impl Encode for Records {
     }
 }
 
-/// Two rounds about the middle of the city.
+/// Two rounds about the centre of the city.
 ///
 /// # Panics
 /// The channel's constants make no sense.

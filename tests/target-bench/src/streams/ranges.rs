@@ -1,10 +1,10 @@
-//! Ultra-wideband ranges, one after the other.
+//! A stream of ultra-wideband ranges, one at a time.
 
 use host_sim::random::{normal, stream};
 
 use super::{Encode, record};
 
-/// Where the images have their anchors, m.
+/// The positions of the images' anchors, m.
 pub const PLACES: [[f64; 3]; 8] = [
     [0.0, 0.0, 2.5],
     [10.0, 0.0, 2.0],
@@ -16,7 +16,7 @@ pub const PLACES: [[f64; 3]; 8] = [
     [0.0, 4.0, 0.2],
 ];
 
-/// Time since the range before (µs), anchor and range (m).
+/// The time since the range before (µs), the anchor and the range (m).
 pub type Ranges = [(u32, usize, f32)];
 
 impl Encode for Ranges {
@@ -28,8 +28,8 @@ impl Encode for Ranges {
     }
 }
 
-/// A tag on an ellipse among so many of the anchors, ranges in epochs of 0.1 s: noise of 5 cm, reflections and
-/// wild values.
+/// The ranges of a tag on an ellipse among the first `anchors` anchors, in epochs of 0.1 s: with noise of 5 cm,
+/// reflections and outliers.
 pub fn ellipse(anchors: usize) -> Vec<(u32, usize, f32)> {
     let mut rng = stream(3, 0);
     let mut samples = Vec::new();

@@ -6,9 +6,9 @@ use anyhow::Result;
 use fatfs::{FileSystem, FormatVolumeOptions, FsOptions, format_volume};
 
 const BLOCK: usize = 512;
-/// A power of two, as the emulator wants it.
+/// The number of blocks of a card, a power of two as the emulator requires.
 const BLOCKS: usize = 1 << 15;
-/// Where the only partition begins.
+/// The first block of the only partition.
 const START: usize = 2048;
 
 /// A card with one empty FAT16 partition.
@@ -23,7 +23,7 @@ pub(crate) fn blank() -> Result<Vec<u8>> {
     Ok(card)
 }
 
-/// A file in the root directory of the partition.
+/// The contents of a file in the root directory of the partition.
 pub(crate) fn file(card: &mut [u8], name: &str) -> Result<Vec<u8>> {
     let partition = Cursor::new(&mut card[START * BLOCK..]);
     let volume = FileSystem::new(partition, FsOptions::new())?;

@@ -1,11 +1,11 @@
-//! The programs of `contrib`, to begin one's own from: they build and link for their boards, for which nobody here has an
-//! emulator, and that is all that is known of them.
+//! The programs of `contrib`, as starting points for users: they build and link for their boards. There is no emulator
+//! of these boards here, so nothing else is tested.
 
 use anyhow::{Result, ensure};
 use object::{Object, ObjectSymbol};
 use target_bench::{Apart, App, CORTEX_M4F, RV32IMC, Target};
 
-/// Flash of the chips, bytes.
+/// The flash sizes of the chips, bytes.
 const NRF52840: u64 = 1 << 20;
 const ESP32C3: u64 = 4 << 20;
 
@@ -24,7 +24,7 @@ fn check(target: &'static Target, name: &'static str, flash: u64, symbols: &[&st
 
 #[test]
 fn a_foot_at_an_nrf52840() -> Result<()> {
-    // The interrupt of the bus whose DMA fetches samples, and the log that a probe reads.
+    // The interrupt of the bus whose DMA fetches samples, and the log buffer that a probe reads.
     check(&CORTEX_M4F, "foot-nrf52840", NRF52840, &["TWISPI0", "_SEGGER_RTT"])
 }
 

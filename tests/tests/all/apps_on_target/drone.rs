@@ -1,4 +1,4 @@
-//! The drone: a satellite receiver and a `LoRa` module on serial ports, the user's place as telemetry.
+//! The drone: a satellite receiver and a `LoRa` module on serial ports, the user's position as telemetry.
 
 use std::f64::consts::TAU;
 
@@ -15,25 +15,26 @@ use target_bench::{App, CORTEX_M4F};
 
 use super::{image, telemetry};
 
-/// Where the user is, m.
+/// The position of the user, m, the height of the drone, m, and the duration, s.
 const USER_AT: [f64; 2] = [1400.0, 700.0];
 const HEIGHT: f64 = 500.0;
 const SECONDS: u32 = 120;
-/// Half of the last decimal of a sentence, 10⁻⁵ minutes, and of what single precision tells at 2 km, m.
+/// The resolution of a position, m: half of the last decimal of a sentence, 10⁻⁵ minutes, and of single precision at 2
+/// km.
 const PLACE_STEP: f64 = 0.02;
-/// Half of the level's last digit, dB.
+/// The resolution of the level, dB: half of its last digit.
 const LEVEL_STEP: f64 = 0.501;
 const GPS: u16 = 0;
 const RADIO: u16 = 1;
 
-/// A second of the flight.
+/// One second of the flight.
 struct Second {
     place: [f64; 3],
-    /// dB; none if nothing was heard.
+    /// The path loss, dB; `None` if nothing was received.
     loss: Option<f64>,
 }
 
-/// Two rounds about the middle of the city.
+/// Two rounds about the centre of the city.
 fn fly() -> Vec<Second> {
     let mut rng = stream(4, 0);
     let channel =
@@ -61,12 +62,12 @@ fn sentence(content: &str) -> String {
     format!("${content}*{checksum:02X}\r\n")
 }
 
-/// Degrees and minutes.
+/// An angle in degrees and minutes.
 fn angle(degrees: f64, width: usize) -> String {
     format!("{:0width$}{:08.5}", degrees.trunc() as u32, degrees.fract() * 60.0)
 }
 
-/// Metres of a degree of longitude and of latitude, from the ellipsoid itself.
+/// The lengths of a degree of longitude and of latitude, m, computed from the ellipsoid.
 fn degree() -> [f64; 2] {
     let (sine, cosine) = ORIGIN[0].to_radians().sin_cos();
     let (axis, eccentricity) = (6_378_137.0, 0.006_694_379_990_14_f64);
@@ -75,7 +76,7 @@ fn degree() -> [f64; 2] {
     [normal * cosine, meridian].map(f64::to_radians)
 }
 
-/// What both modules send, as records of the board's tape.
+/// The output of both modules, as records of the board's tape.
 fn encode(flight: &[Second]) -> Vec<u8> {
     let mut tape = Vec::new();
     let mut record = |elapsed_us: u32, port: u16, text: &str| {
@@ -96,7 +97,7 @@ fn encode(flight: &[Second]) -> Vec<u8> {
         let fix =
             format!("GPGGA,{time},{latitude},N,{longitude},E,1,10,0.8,{altitude:.1},M,36.0,M,,");
         let course = format!("GPRMC,{time},A,{latitude},N,{longitude},E,20.0,90.0,250620,,,A");
-        // Damaged, then whole in two pieces, and one that is of no interest.
+        // A damaged sentence, then the whole one in two pieces, and one that is of no interest.
         record(700_000, GPS, &sentence(&fix).replacen('1', "7", 1));
         let whole = sentence(&fix);
         let (first, rest) = whole.split_at(30);
@@ -111,7 +112,7 @@ fn encode(flight: &[Second]) -> Vec<u8> {
     tape
 }
 
-/// What the host's own tracker makes of what was measured.
+/// The estimates of the host's own tracker from these measurements.
 fn on_host(measured: &[PathLoss]) -> Vec<Position> {
     let mut rng = Xoshiro128PlusPlus::from_rng(&mut Xoshiro128PlusPlus::seed_from_u64(7));
     let mut tracker = Tracker::<f32, PARTICLES>::new(
@@ -137,7 +138,7 @@ fn on_host(measured: &[PathLoss]) -> Vec<Position> {
     measured.iter().map(step).collect()
 }
 
-/// What was measured is the flight, in the steps of both modules.
+/// Checks that the measurements are those of the flight, within the resolution of both modules.
 fn check_measurements(told: &[PathLoss], flight: &[Second]) {
     let heard = (1_u64..)
         .zip(flight)

@@ -1,5 +1,5 @@
-//! The foot's node on embassy and on RTIC: samples arrive on a serial port, byte by byte as its interrupt takes them, and
-//! what comes back is what the host computes, to the bit.
+//! The foot's node on embassy and on RTIC: samples arrive on a serial port, byte by byte by interrupt, and the output
+//! equals what the host computes, bit for bit.
 
 use anyhow::{Result, ensure};
 use foot_node::{FRAME, Node};
@@ -10,7 +10,7 @@ use target_bench::{App, CORTEX_M4F};
 
 use super::{image, telemetry};
 
-/// A walk as frames, with noise between two of them and a farewell at the end.
+/// A walk as frames, with noise between two of them and a farewell at the end; and the number of frames.
 fn line() -> (Vec<u8>, u32) {
     let (mut line, mut sequence, mut time_us) = (Vec::new(), 0, 0);
     let mut send = |message: Message, line: &mut Vec<u8>| {

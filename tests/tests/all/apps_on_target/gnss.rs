@@ -1,4 +1,4 @@
-//! The receiver of carrier phases: a u-blox module and a modem with products on serial ports, the station's place as
+//! The receiver of carrier phases: a u-blox module and a modem with products on serial ports, the station's position as
 //! telemetry.
 
 use anyhow::{Result, bail, ensure};
@@ -17,12 +17,12 @@ use super::gnss_stream::{
 };
 use super::{image, telemetry};
 
-/// From an epoch to the next, µs.
+/// The time between epochs, µs.
 const INTERVAL_US: u64 = 30_000_000;
-/// How far from the station it may be found, m: codes of ten satellites, and few epochs.
+/// The largest accepted error of the position, m, given codes of ten satellites and few epochs.
 const CLOSE: f64 = 2.5;
 
-/// What the host's own readers and filter make of the same files and observations.
+/// The solutions of the host's own readers and filter from the same files and observations.
 fn on_host(epochs: &[Observed]) -> Result<Vec<Solution<STATES>>> {
     let text = |text: String| Text::unpack("file", text.into_bytes());
     let orbits = Orbits::parse(&[text(orbits())?])?;
@@ -49,14 +49,14 @@ fn on_host(epochs: &[Observed]) -> Result<Vec<Solution<STATES>>> {
     epochs.iter().map(solve).collect()
 }
 
-/// What the target must send of a solution.
+/// The message that the target must send for a solution.
 fn position(index: usize, solution: &Solution<STATES>) -> GlobalPosition {
     let sigma = Some((solution.covariance.trace() / 3.0).sqrt() as f32);
     let time_us = INTERVAL_US * (index as u64 + 1);
     GlobalPosition { time_us, position: *solution.position.as_array(), sigma }
 }
 
-/// What the target must log of a solution.
+/// The lines that the target must log for a solution.
 fn log(solution: &Solution<STATES>) -> Vec<String> {
     let mut lines =
         vec![format!("warn G{ONE_CARRIER} Incomplete"), format!("warn G{UNKNOWN} NoOrbit")];
@@ -73,8 +73,9 @@ fn log(solution: &Solution<STATES>) -> Vec<String> {
     lines
 }
 
-/// What is wrong is found, and nothing else. (The ionosphere of the images is a flat layer, which low satellites cross
-/// so obliquely that their phases on L1 and L2 part by decimetres: that looks like slips, and is left out here.)
+/// Checks that all faults are found, and nothing else. (The ionosphere of the images is a flat layer, which low
+/// satellites cross so obliquely that their phases on L1 and L2 diverge by decimetres: that looks like slips, and is
+/// excluded here.)
 fn check_faults(solutions: &[Solution<STATES>]) -> Result<()> {
     for (index, solution) in solutions.iter().enumerate() {
         let mut told = log(solution).split_off(2);
@@ -117,7 +118,7 @@ fn cortex_m4f() -> Result<()> {
         println!("{error:.3} m from the station, sigma {:?} m", position.sigma);
         ensure!(error < CLOSE, "the station is found {error} m off");
     }
-    // A message and a line that came damaged.
+    // A damaged message and a damaged line.
     let counts = health.map(|health| (health.accepted as usize, health.rejected, health.failed));
     assert_eq!(counts, Some((epochs.len(), 0, 2)));
 

@@ -1,5 +1,5 @@
-//! What a receiver of carrier phases and a modem send: the images' satellites, as messages UBX-RXM-RAWX, and as lines
-//! of SP3 and RINEX clock files.
+//! The output of a receiver of carrier phases and of a modem: the images' satellites, as messages UBX-RXM-RAWX, and as
+//! lines of SP3 and RINEX clock files.
 
 use kestirim_gnss_ppp::GpsTime;
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
@@ -7,42 +7,42 @@ use kestirim_ppp_filter::SatelliteObservation;
 use kestirim_scalar::Components;
 use kestirim_tests::ppp::{CLOCK, Epochs, INTERVAL, SATELLITES, in_orbit, station};
 
-/// In which epoch a satellite's phase on L2 slips, which satellite, and by how many cycles.
+/// The epoch in which a satellite's phase on L2 slips, the satellite, and the size of the slip in cycles.
 pub(crate) const SLIP: usize = 2;
 pub(crate) const SLIPPED: u8 = 4;
 const CYCLES: f64 = 7.0;
-/// In which epoch a message and a line come damaged before they come whole.
+/// The epoch in which a message and a line arrive damaged before they arrive whole.
 pub(crate) const DAMAGED: usize = 3;
-/// A satellite that is observed on L1 only, and one that the products do not know.
+/// A satellite that is observed on L1 only, and one that is missing in the products.
 pub(crate) const ONE_CARRIER: u8 = 30;
 pub(crate) const UNKNOWN: u8 = 31;
 
-/// The week of 25 June 2020, the modified Julian day it begins with, and the second of the first epoch.
+/// The week of 25 June 2020, the modified Julian day on which it begins, and the second of the first epoch.
 const WEEK: (u16, i32, f64) = (2111, 59_021, 388_770.0);
-/// Samples of an orbit, and the time between them, s: the middle one is at midday.
+/// The number of samples of an orbit and the time between them, s; the middle one is at midday.
 const ORBIT: (i32, f64) = (11, 900.0);
 
 const RECEIVER: u16 = 0;
 const MODEM: u16 = 1;
-/// Bytes that come at once.
+/// The number of bytes that arrive at once.
 const PIECE: usize = 200;
 
-/// What the receiver tells of an epoch.
+/// The observations of one epoch.
 #[derive(Debug)]
 pub(crate) struct Observed {
-    /// Of the week, by the receiver's clock.
+    /// The second of the week, by the receiver's clock.
     second: f64,
     pub(crate) observations: Vec<SatelliteObservation<'static>>,
 }
 
 impl Observed {
-    /// When, by the receiver's clock.
+    /// The time of the epoch, by the receiver's clock.
     pub(crate) fn time(&self) -> GpsTime {
         GpsTime::new(WEEK.1, self.second)
     }
 }
 
-/// All epochs.
+/// The observations of all epochs.
 pub(crate) fn observe() -> Vec<Observed> {
     let epoch = |(index, epoch): (usize, kestirim_tests::ppp::Epoch)| {
         let ahead = (CLOCK[0] + CLOCK[1] * index as f64) / SPEED_OF_LIGHT;
@@ -140,7 +140,7 @@ fn e19_12(value: f64) -> String {
     format!("{mantissa}E{exponent:+03}")
 }
 
-/// The clocks at an epoch, or at the one before the first.
+/// The clock records at an epoch; −1 is the one before the first.
 fn clocks_at(epoch: i32) -> String {
     let elapsed = INTERVAL * f64::from(epoch);
     let [hour, minute, second] = calendar(43_200.0 - INTERVAL + elapsed);
@@ -154,12 +154,12 @@ fn clocks_at(epoch: i32) -> String {
     (0..SATELLITES).map(record).collect()
 }
 
-/// A RINEX clock file for so many epochs.
+/// A RINEX clock file for `epochs` epochs.
 pub(crate) fn clocks(epochs: usize) -> String {
     clock_header() + &(-1..=epochs as i32).map(clocks_at).collect::<String>()
 }
 
-/// What both send, as records of the board's tape.
+/// The output of both modules, as records of the board's tape.
 pub(crate) fn encode(epochs: &[Observed]) -> Vec<u8> {
     let mut tape = Vec::new();
     let mut send = |elapsed_us: u32, port: u16, bytes: &[u8]| {

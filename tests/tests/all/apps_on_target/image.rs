@@ -1,4 +1,4 @@
-//! What an image holds, and what its log means.
+//! Inspects the contents of an image, and decodes its log.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use defmt_decoder::{DecodeError, Table};
 use object::{Object, ObjectSection};
 use target_bench::{App, Run};
 
-/// Lines of the log of a run, `LEVEL text`.
+/// The log lines of a run, `LEVEL text`.
 pub(crate) fn log(app: &App, run: &Run) -> Result<Vec<String>> {
     let table = Table::parse(&app.file()?)?.context("the image logs")?;
     let mut decoder = table.new_stream_decoder();
@@ -25,19 +25,20 @@ pub(crate) fn log(app: &App, run: &Run) -> Result<Vec<String>> {
     }
 }
 
-/// Checks what is linked into an application's image, and says how large it is.
+/// Checks what is linked into an application's image, and prints its size.
 pub(crate) fn check(name: &str, app: &App) -> Result<()> {
     let elf = app.elf()?;
     assert_eq!(elf.double_symbols(), Vec::<String>::new(), "{name} has no double precision");
     check_panics(name, app)
 }
 
-/// Checks that nothing of ours can panic, and says how large an application's image is.
+/// Checks that none of our code can panic, and prints the size of an application's image.
 pub(crate) fn check_panics(name: &str, app: &App) -> Result<()> {
     check_panics_but_in(&[], name, app)
 }
 
-/// The same, but for these sources of async functions: the compiler has them panic if they are resumed after their end.
+/// Checks that none of our code can panic except in these sources of async functions: the compiler makes them panic if
+/// they are resumed after their end.
 pub(crate) fn check_panics_but_in(resumed: &[&str], name: &str, app: &App) -> Result<()> {
     let elf = app.elf()?;
     let mut places = panicking(&app.file()?)?;
@@ -53,15 +54,15 @@ pub(crate) fn check_panics_but_in(resumed: &[&str], name: &str, app: &App) -> Re
     Ok(())
 }
 
-/// The crates and directories in which something can panic: the panic handler tells the place, so its file is
-/// among the constants of the image.
+/// The crates and directories in which something can panic: the panic handler names the place, so its file is among the
+/// constants of the image.
 fn panicking(elf: &[u8]) -> Result<BTreeSet<String>> {
     let file = object::File::parse(elf)?;
     let constants = file.section_by_name(".rodata").context("there are constants")?.data()?;
     let texts = constants.split(|&byte| !(b' '..=b'~').contains(&byte));
     let mut places = BTreeSet::new();
     for text in texts.filter_map(|text| str::from_utf8(text).ok()) {
-        // Constants lie side by side: a path begins where the one before ends.
+        // Constants are contiguous: a path begins where the one before ends.
         let mut begin = 0;
         for end in text.match_indices(".rs").map(|(at, found)| at + found.len()) {
             places.insert(origin(&text[begin..end]));
@@ -71,7 +72,8 @@ fn panicking(elf: &[u8]) -> Result<BTreeSet<String>> {
     Ok(places)
 }
 
-/// The crate of a registry's or the standard library's file, without its version; the path of any other.
+/// The crate that a file of a registry or of the standard library belongs to, without its version; the path of any
+/// other file.
 fn origin(path: &str) -> String {
     if path.contains("/library/core/") {
         return "core".to_owned();

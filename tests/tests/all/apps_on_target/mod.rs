@@ -1,7 +1,7 @@
-//! Full-size applications on emulated boards: sensors behind their drivers, telemetry over a serial port,
-//! a log on an SD card, `defmt` on the console. What arrives at the host is what the host computes itself.
+//! Full-size applications on emulated boards: sensors behind their drivers, telemetry over a serial port, a log on an
+//! SD card, `defmt` on the console. The data that arrive at the host equal what the host computes itself.
 //!
-//! On a machine without the tools these tests say SKIPPED and pass; with
+//! On a machine without the tools these tests print SKIPPED and pass; with
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead. With `--nocapture` they print sizes.
 
 mod card;

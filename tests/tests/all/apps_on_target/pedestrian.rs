@@ -13,12 +13,12 @@ use target_bench::{App, CORTEX_M0, CORTEX_M4F, Target};
 
 use super::{card, image, telemetry};
 
-/// Half of what the sensor resolves with 16 g and 2000 °/s, and what single precision adds.
+/// Half of the sensor's resolution with 16 g and 2000 °/s, and the rounding of single precision.
 const FORCE_STEP: f64 = 16.0 / 32768.0 * 9.806_65 / 2.0 + 1e-4;
 const RATE_STEP: f64 = 0.001_065_264_436 / 2.0 + 1e-6;
 
-/// What the application tells of these samples after them, computed on the host: positions and footprints in
-/// its order, and the length of the path (m).
+/// The application's messages for these samples, computed on the host: positions and footprints in its order, and the
+/// length of the path (m).
 fn on_host<T: Scalar>(samples: &[Imu]) -> (Vec<Message>, f32) {
     let mut tracker = EkfTracker::<T>::new(Config::default());
     let metres = |position: &SVector<T, 3>| position.as_array().map(T::to_f32);
@@ -52,7 +52,7 @@ fn near(ours: [f32; 3], theirs: [f64; 3], tolerance: f64) -> bool {
     ours.iter().zip(theirs).all(|(&ours, theirs)| (f64::from(ours) - theirs).abs() <= tolerance)
 }
 
-/// The samples that were sent are those of the walk, in the sensor's steps.
+/// Checks that the samples that were sent are those of the walk, within the sensor's resolution.
 fn check_samples(sent: &[Imu], walk: &[Sample]) {
     assert_eq!(sent.len(), walk.len());
     let mut time_us = 0;
@@ -65,7 +65,7 @@ fn check_samples(sent: &[Imu], walk: &[Sample]) {
     }
 }
 
-/// The log on the card is what `host-sim replay pedestrian` reads, and says what was sent.
+/// Checks that `host-sim replay pedestrian` reads the log on the card, and that it holds what was sent.
 fn check_log<T: Scalar>(text: &[u8], sent: &[Imu], path: f32) -> Result<()> {
     let log = log::parse(Path::new("WALK.TXT"), text, &log::Options::default())?;
     assert_eq!(log.warnings, Vec::<String>::new());

@@ -11,21 +11,21 @@ use target_bench::{App, RV32IMC};
 
 use super::{image, telemetry};
 
-/// What an exchange adds to a range: a tick of the counters is 4.7 mm.
+/// The error that an exchange adds to a range, m: a tick of the counters is 4.7 mm.
 const TICK: f32 = 0.005;
-/// What that adds to a position, m.
+/// The error that this adds to a position, m.
 const APART: f64 = 0.02;
-/// An anchor's turn, µs.
+/// The duration of an anchor's turn, µs, and the number of turns.
 const TURN: u32 = 25_000;
 const STEPS: u32 = 1_200;
 
-/// What the robot's devices measure in one turn.
+/// The measurements of the robot's devices in one turn.
 struct Turn {
-    /// Where the robot is, m.
+    /// The position of the robot, m.
     tag: [f64; 2],
-    /// To the anchor whose turn it is, m; none if it is silent.
+    /// The range to the anchor whose turn it is, m; `None` if the anchor is silent.
     range: Option<f32>,
-    /// cm/s².
+    /// The acceleration, cm/s².
     acceleration: [i32; 3],
 }
 
@@ -58,7 +58,7 @@ fn encode(ride: &[Turn]) -> Vec<u8> {
     bytes
 }
 
-/// Where the robot is after every range, as the host's own tracker says.
+/// The position of the robot after every range, as the host's own tracker estimates it.
 fn on_host(ride: &[Turn], ranges: &[Range]) -> Vec<[f32; 2]> {
     let anchors = SITES.map(|site| Anchor {
         position: SVector::from(site.place.map(|cm| Q12_20::from_micro(10_000 * cm))),
@@ -100,7 +100,7 @@ fn rv32imc() -> Result<()> {
             other => anyhow::bail!("{other:?}"),
         }
     }
-    // The whole of two-way ranging: what was measured comes out, with the turn's time and anchor.
+    // Two-way ranging as a whole yields the true ranges, with the turn's time and anchor.
     let measured: Vec<Range> = (0_u32..)
         .zip(&ride)
         .filter_map(|(step, turn)| {
@@ -115,11 +115,11 @@ fn rv32imc() -> Result<()> {
         worst = worst.max((told.range - measured.range).abs());
     }
     ensure!(worst < TICK, "a range is {worst} m off");
-    // The path is the host's, bit for bit, from the ranges that were told …
+    // The path is bit for bit what the host computes from the ranges that were sent.
     let told: Vec<[f32; 2]> =
         path.iter().map(|told| [told.position[0], told.position[1]]).collect();
     assert_eq!(told, on_host(&ride, &ranges));
-    // … nearly that from what was measured, and the robot's.
+    // The path is close to that from the true ranges, and to the robot's.
     let ideal = on_host(&ride, &measured);
     assert_eq!(told.len(), ideal.len());
     let (mut apart, mut squares) = (0_f64, 0.0);

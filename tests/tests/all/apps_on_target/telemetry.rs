@@ -1,8 +1,8 @@
-//! What came over the serial port.
+//! Decodes telemetry from a serial port.
 
 use kestirim_telemetry::{Message, Receiver};
 
-/// All messages, in their order; panics if anything was lost or damaged.
+/// All messages in order; panics if any was lost or damaged.
 pub(crate) fn messages(bytes: &[u8]) -> Vec<Message> {
     let mut receiver = Receiver::new();
     let frames: Vec<_> = receiver.frames(bytes).collect();

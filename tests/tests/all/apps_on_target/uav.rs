@@ -14,12 +14,12 @@ use super::{image, telemetry};
 const INTERVAL: f64 = 0.01;
 const INTERVAL_US: u32 = 10_000;
 
-/// Half of a sixteenth of a degree, in radians, and what single precision adds.
+/// Half of a sixteenth of a degree, rad, and the rounding of single precision.
 const ANGLE_STEP: f32 = 0.000_546;
-/// Half of what 14 bits of 2 psi are at the slowest airspeed here, and the air's density, in m/s.
+/// Half of the resolution of 14 bits of 2 psi at the slowest airspeed here, and the effect of the air density, m/s.
 const AIRSPEED_STEP: f32 = 0.02;
 
-/// A moment of a flight: what was applied, what is to be measured, and the state.
+/// One moment of a flight: the applied inputs, the outputs to be measured, and the state.
 struct Moment {
     inputs: [f32; 2],
     outputs: [f32; 3],
@@ -47,7 +47,7 @@ fn fly() -> Vec<Moment> {
     (0..1000).map(&mut moment).collect()
 }
 
-/// What the sensors and the autopilot play: microseconds, inputs, outputs.
+/// The data that the sensors and the autopilot play back: microseconds, inputs, outputs.
 fn encode(flight: &[Moment]) -> Vec<u8> {
     let record = |moment: &Moment| {
         let numbers = moment.inputs.iter().chain(&moment.outputs);
@@ -57,7 +57,7 @@ fn encode(flight: &[Moment]) -> Vec<u8> {
     flight.iter().flat_map(record).collect()
 }
 
-/// What was measured is the flight, in the sensors' steps.
+/// Checks that the measurements are those of the flight, within the sensors' resolution.
 fn check_measurements(sent: &[Flight], flight: &[Moment]) {
     assert_eq!(sent.len(), flight.len());
     for (number, (sent, flown)) in sent.iter().zip(flight).enumerate() {
@@ -70,7 +70,7 @@ fn check_measurements(sent: &[Flight], flight: &[Moment]) {
     }
 }
 
-/// The states that the application tells after these measurements, computed on the host.
+/// The states that the application sends after these measurements, computed on the host.
 fn on_host<T: Scalar>(measured: &[Flight]) -> Vec<State> {
     let start = SVector::from(uav::START.map(T::from_f32));
     let mut observer = Predictor::<T, 4, 2, 3>::new(&uav::gains(INTERVAL), &start).expect("gains");
@@ -84,9 +84,9 @@ fn on_host<T: Scalar>(measured: &[Flight]) -> Vec<State> {
     measured.iter().map(step).collect()
 }
 
-/// Root mean square error of the angle of attack, which nobody measures, after the first five seconds (rad).
+/// The root mean square error of the angle of attack, which is not measured, after the first five seconds (rad).
 fn angle_of_attack_error(states: &[State], flight: &[Moment]) -> f64 {
-    // A state is told for the moment after its measurement.
+    // A state is sent for the moment after its measurement.
     let errors = states.iter().zip(flight.iter().skip(1)).skip(500);
     let squares: Vec<f64> =
         errors.map(|(state, flown)| (f64::from(state.state[0]) - flown.state[0]).powi(2)).collect();

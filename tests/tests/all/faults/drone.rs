@@ -11,7 +11,7 @@ use serde_json::Value;
 use super::table::{Table, one_in};
 use super::{Answer, Case, desk, judge, run};
 
-/// Logs, with where the transmitter is and the area that it is in.
+/// Logs, with the transmitter's position and the area that it is in.
 const RECORDINGS: [[&str; 3]; 2] = [
     ["afar_1204/stops.csv", "afar_1204/truth.csv", "afar_1204/area.csv"],
     [

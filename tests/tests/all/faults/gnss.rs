@@ -1,4 +1,4 @@
-//! Faults of a GPS receiver and of the products it is solved with: ESBC, a whole day, on the ground and in motion.
+//! Faults of a GPS receiver and of its products: ESBC, a whole day, on the ground and in motion.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -17,22 +17,22 @@ use super::table::Table;
 use super::{Answer, Case, desk, judge, run_writing};
 
 const TRUTH: &str = "3582104.7657,532590.1785,5232755.1390";
-/// Up to here there are orbits, s of the day.
+/// The end of the orbits, s of the day.
 const UNTIL: f64 = 85_500.0;
-/// From here on faults act, s of the day.
+/// The time from which faults act, s of the day.
 const NOON: f64 = 43_200.0;
 
-/// A satellite's four observations, m and cycles: C1, L1, C2, L2.
+/// A satellite with its four observations, in m and cycles: C1, L1, C2, L2.
 type Observed = (String, [Option<f64>; 4]);
 
-/// An epoch: seconds of the day, and what was observed.
+/// An epoch: the second of the day, and the observations.
 #[derive(Clone)]
 struct Epoch {
     second: f64,
     observed: Vec<Observed>,
 }
 
-/// What a solution is made of.
+/// The observations and products of a day.
 #[derive(Clone)]
 struct Day {
     header: String,
@@ -106,7 +106,7 @@ impl Day {
         Ok(files)
     }
 
-    /// Changes what was observed from noon on.
+    /// Changes the observations from noon on.
     fn at_noon(&mut self, mut with: impl FnMut(f64, &mut Observed)) {
         for epoch in self.epochs.iter_mut().filter(|epoch| epoch.second >= NOON) {
             for observed in &mut epoch.observed {
@@ -115,15 +115,16 @@ impl Day {
         }
     }
 
-    /// Adds to one of the four, from noon on, in metres or cycles.
+    /// Adds a value to one of the four observations, from noon on, in metres or cycles.
     fn add(&mut self, kind: usize, with: impl Fn(f64, &str) -> f64) {
         self.at_noon(|second, (satellite, values)| {
             values[kind] = values[kind].map(|value| value + with(second, satellite));
         });
     }
 
-    /// From noon on the receiver's clock is a millisecond fast: it measures everything a millisecond sooner, when satellites
-    /// were up to 0.8 m elsewhere, and what is `late` of the four is longer by a millisecond of light.
+    /// From noon on the receiver's clock is a millisecond fast: it measures everything a millisecond sooner, when
+    /// satellites were up to 0.8 m away, and those of the four observations that are `late` are longer by a millisecond
+    /// of light.
     fn clock_jumps(&mut self, late: [bool; 4]) {
         let mut ways = BTreeMap::<String, Vec<[f64; 2]>>::new();
         for epoch in &self.epochs {
@@ -154,19 +155,19 @@ impl Day {
     }
 }
 
-/// Whether it is one in so many satellites and epochs, without a pattern.
+/// Selects one in `many` satellites and epochs, without a pattern.
 fn one_in(many: u64, second: f64, satellite: &str) -> bool {
     let number: u64 = satellite[1..].trim().parse().unwrap_or(0);
     let mixed = (second as u64 * 64 + number).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 24;
     mixed.is_multiple_of(many)
 }
 
-/// Wavelengths of L1 and L2, m.
+/// The wavelengths of L1 and L2, m.
 const LAMBDA: [f64; 2] = [0.190_293_673, 0.244_210_213];
-/// A millisecond of light, m.
+/// The distance that light travels in a millisecond, m.
 const MILLISECOND: f64 = 299_792.458;
 
-/// A line of SP3 with the position, if it holds one, moved by a kilometre.
+/// A line of SP3 whose position, if it holds one, is moved by a kilometre.
 fn a_kilometre_off(line: &str) -> String {
     match line.get(4..18).and_then(|x| x.trim().parse::<f64>().ok()) {
         Some(x) if line.starts_with('P') => {
@@ -265,17 +266,17 @@ fn measure(report: &Value) -> Option<f64> {
     report["accuracy"]["rms_3d_m"].as_f64()
 }
 
-/// Of an epoch that nothing speaks against: how far it is from the truth, in standard deviations.
+/// The epoch, among those not reported as bad, that is farthest from the truth in standard deviations.
 struct Farthest {
     second: f64,
     error_m: f64,
     deviations: f64,
-    /// How many such epochs are farther than ten.
+    /// The number of such epochs beyond ten standard deviations.
     beyond: usize,
 }
 
 impl Farthest {
-    /// Of a track as it was written.
+    /// Evaluates a track as it was written.
     fn of(track: &Table) -> Self {
         let [t, x, y, z, east, north, up, health] =
             ["t", "x", "y", "z", "sde", "sdn", "sdu", "health"].map(|name| track.column(name));
@@ -311,8 +312,8 @@ fn replay(day: &Day, clocks: &Path, mode: &str) -> Result<(Answer, Option<Farthe
     Ok((answer, farthest.as_ref().map(Farthest::of)))
 }
 
-/// Faults after which an epoch is farther than ten deviations although nothing speaks against it,
-/// and why.
+/// Faults after which an epoch is off by more than ten standard deviations although it is not reported as bad, and the
+/// reasons.
 const UNTOLD: [(&str, &str); 1] =
     [("orbits a kilometre off", "all orbits moved alike move the position, and fit")];
 

@@ -1,9 +1,9 @@
-//! The fault matrix: faults put into recordings, what became of the answer, and whether the user was told.
+//! The fault matrix: faults put into recordings, their effect on the answer, and whether the user was told.
 //!
-//! A case is silent and wrong if its error is more than three times the clean one and more than three times the
-//! standard deviation that was told, and neither health nor a warning nor a refusal says so. Each such case stands in
-//! [`UNSEEN`] with the reason; a new one fails, and so does one of the list that is told by now. With `--nocapture` the
-//! whole table is printed as the book has it.
+//! A case is silently wrong if its error is more than three times the clean one and more than three times the reported
+//! standard deviation, and neither health nor a warning nor a refusal says so. Each such case is listed in [`UNSEEN`]
+//! with the reason; a new one fails, and so does a listed one that is reported by now. With `--nocapture` the whole
+//! table is printed as in the book.
 
 mod drone;
 mod gnss;
@@ -19,7 +19,8 @@ use host_sim::system::{AnySystem, Files, Settings, Source, Wanted};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// What no estimator can see, or ours does not yet: recording and fault begin so, and why.
+/// Faults that no estimator can see, or ours does not see yet: the beginning of the names of recording and fault, and
+/// the reason.
 const UNSEEN: &[(&str, &str, &str)] = &[
     ("esp32_los2", "room mirrored", "a mirrored room has the same ranges"),
     ("lias_mid_tag1", "room mirrored", "the same"),
@@ -31,18 +32,19 @@ const UNSEEN: &[(&str, &str, &str)] = &[
     ),
 ];
 
-/// More characters nobody reads while something is wrong.
+/// The longest accepted sentence, in characters: longer ones are not read while something is wrong.
 const LONGEST_SENTENCE: usize = 200;
 
-/// One run of a system: its error, m (UAV: mrad), and what the user was told.
+/// One run of a system: its error, m (UAV: mrad), and what was reported to the user.
 #[derive(Debug, Clone)]
 struct Answer {
-    /// `None`: refused.
+    /// The error; `None` if the run was refused.
     error: Option<f64>,
     over_sigma: Option<f64>,
-    /// State and reasons of the health, or the refusal.
+    /// The state and reasons of the health, or the refusal.
     told: String,
-    /// Whether it was told: it was refused, the health is not good, or there is a warning that the clean recording has not.
+    /// The warnings. A fault counts as reported if the run was refused, the health is not good, or there is a warning
+    /// that the clean recording lacks.
     warnings: Vec<String>,
     is_good: bool,
 }
@@ -103,7 +105,7 @@ fn run(
     run_writing(system, files, settings, measure, &Wanted::default())
 }
 
-/// The same, with files written.
+/// Runs a system on files with these settings, and writes files.
 fn run_writing(
     system: &dyn AnySystem,
     files: &[(&str, &Path)],
@@ -139,7 +141,7 @@ fn run_writing(
     })
 }
 
-/// The table as the book has it: a row a fault, two columns a recording.
+/// Prints the table as the book has it: one row for each fault, two columns for each recording.
 fn print(cases: &[Case]) {
     let number = |error: Option<f64>| match error {
         None => "refused".to_owned(),
@@ -169,7 +171,7 @@ fn print(cases: &[Case]) {
     }
 }
 
-/// Looks at all cases of a system at once.
+/// Judges all cases of a system at once.
 fn judge(cases: &[Case]) {
     print(cases);
     let told = cases.iter().filter(|case| case.is_told()).count();
@@ -183,7 +185,7 @@ fn judge(cases: &[Case]) {
         faulty.warnings.iter().chain(faulty.error.is_none().then_some(&faulty.told))
     });
     for sentence in sentences {
-        // A path is as long as its folder's.
+        // The length of a path depends on its folder.
         let own = sentence.split_whitespace().filter(|word| !word.contains('/'));
         let length: usize = own.map(|word| word.chars().count() + 1).sum();
         assert!(length <= LONGEST_SENTENCE, "{length} characters: {sentence}");

@@ -15,14 +15,14 @@ const FORCE: [&str; 3] = ["ax", "ay", "az"];
 const RATE: [&str; 3] = ["gx", "gy", "gz"];
 const ALL: [&str; 6] = ["ax", "ay", "az", "gx", "gy", "gz"];
 
-/// A fault of the log, and what it does to times.
+/// A fault of the log, and its effect on times.
 type Fault = (&'static str, fn(&mut Table), fn(f64, f64) -> f64);
 
 fn same(t: f64, _: f64) -> f64 {
     t
 }
 
-/// Samples repeat the one before for so many seconds after the middle.
+/// Repeats the same sample for `length` seconds after the middle.
 fn stick(table: &mut Table, length: f64) {
     let is_stuck = table.after_the_middle(length);
     for row in 1..table.rows.len() {

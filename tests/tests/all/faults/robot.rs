@@ -12,7 +12,7 @@ use serde_json::Value;
 use super::table::{Table, one_in};
 use super::{Answer, Case, desk, judge, run};
 
-/// Recordings in a plane, with the height of the tag that is known, m.
+/// Recordings in a plane, with the known height of the tag, m.
 const RECORDINGS: [(&str, &str); 3] =
     [("esp32_los2", "0.1"), ("lias_mid_tag1", ""), ("trek_m1l", "")];
 
@@ -70,7 +70,7 @@ impl Room {
         self.ranges.rows.retain(|row| row[column] != name);
     }
 
-    /// The last two.
+    /// Keeps only the ranges of the last two anchors.
     fn keep_two(&mut self) {
         let (anchors, from) = (self.anchors.rows.len(), self.ranges.rows.len() / 3);
         let lost: Vec<_> =

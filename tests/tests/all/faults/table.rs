@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-/// A CSV file: a header, and fields that may be empty or words.
+/// A CSV file: a header, and fields that may be empty or contain words.
 #[derive(Clone)]
 pub(super) struct Table {
     pub(super) header: Vec<String>,
@@ -32,7 +32,7 @@ impl Table {
         Ok(path)
     }
 
-    /// The place of a column.
+    /// The index of a column.
     pub(super) fn column(&self, name: &str) -> usize {
         self.header.iter().position(|it| it == name).unwrap_or_else(|| panic!("no column {name}"))
     }
@@ -54,13 +54,13 @@ impl Table {
         }
     }
 
-    /// The same from a place on, a share of all rows.
+    /// Changes the numbers of these columns from a row on, given as a share of all rows.
     pub(super) fn map_from(&mut self, share: f64, columns: &[&str], with: impl Fn(f64) -> f64) {
         let from = (share * self.rows.len() as f64) as usize;
         self.map(columns, |row, value| if row < from { value } else { with(value) });
     }
 
-    /// The largest size of numbers in these columns.
+    /// The largest magnitude of the numbers in these columns.
     pub(super) fn largest(&self, columns: &[&str]) -> f64 {
         let column = |name: &&str| {
             let column = self.column(name);
@@ -69,20 +69,20 @@ impl Table {
         columns.iter().map(column).fold(0.0, f64::max)
     }
 
-    /// First and last time, s.
+    /// The first and last time, s.
     pub(super) fn span(&self) -> [f64; 2] {
         let t = self.column("t");
         [self.number(0, t), self.number(self.rows.len() - 1, t)]
     }
 
-    /// Rows whose time is for `length` seconds after the middle.
+    /// Selects the rows within `length` seconds after the middle.
     pub(super) fn after_the_middle(&self, length: f64) -> impl Fn(&Self, usize) -> bool + use<> {
         let [from, to] = self.span();
         let (middle, t) = (f64::midpoint(from, to), self.column("t"));
         move |table, row| (middle..middle + length).contains(&table.number(row, t))
     }
 
-    /// Leaves out what is measured for so many seconds after the middle.
+    /// Removes the rows within `length` seconds after the middle.
     pub(super) fn drop_out(&mut self, length: f64) {
         let is_lost = self.after_the_middle(length);
         let before = self.clone();
@@ -90,7 +90,7 @@ impl Table {
         self.rows = kept.map(|row| before.rows[row].clone()).collect();
     }
 
-    /// What these columns say comes so many rows late.
+    /// Delays the values of these columns by `rows` rows.
     pub(super) fn late(&mut self, columns: &[&str], rows: usize) {
         let before = self.clone();
         for name in columns {
@@ -101,24 +101,24 @@ impl Table {
         }
     }
 
-    /// Every row twice.
+    /// Repeats every row.
     pub(super) fn duplicate(&mut self) {
         self.rows = self.rows.iter().flat_map(|row| [row.clone(), row.clone()]).collect();
     }
 
-    /// Neighbours change places, pair by pair.
+    /// Swaps neighbouring rows, pair by pair.
     pub(super) fn reorder(&mut self) {
         self.rows.chunks_exact_mut(2).for_each(<[_]>::reverse);
     }
 
-    /// Two columns change names.
+    /// Swaps the names of two columns.
     pub(super) fn swap(&mut self, a: &str, b: &str) {
         let (a, b) = (self.column(a), self.column(b));
         self.header.swap(a, b);
     }
 }
 
-/// Whether it is one in so many, spread without a pattern: a multiplicative hash of the row.
+/// Selects one in `many` rows, spread without a pattern: a multiplicative hash of the row.
 pub(super) fn one_in(many: usize, row: usize) -> bool {
     (row.wrapping_mul(2_654_435_761) >> 7).is_multiple_of(many)
 }

@@ -1,5 +1,5 @@
-//! Faults of an aircraft's sensors. The flights are synthetic, of P2 with the noise of usual sensors: of a recorded
-//! aircraft no model is known.
+//! Faults of an aircraft's sensors. The flights are synthetic, of P2 with the noise of usual sensors, because no model
+//! of a recorded aircraft is known.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use super::{Answer, Case, desk, judge, run};
 
 const OUTPUTS: [&str; 3] = ["q", "V", "theta"];
 
-/// A fault of the log, and the model that is told.
+/// A fault of the log, and the model that is given.
 type Fault = (&'static str, fn(&mut Table), &'static str);
 
 fn empty(table: &mut Table, name: &str, length: f64) {
@@ -79,7 +79,7 @@ const FAULTS: &[Fault] = &[
     ("times halved", |it| it.map(&["t"], |_, t| t / 2.0), "P2"),
 ];
 
-/// A flight that has settled, and its truth: t, α.
+/// A flight in steady state, and its truth: t, α.
 fn flight(inputs: Inputs) -> (Table, Table) {
     let plant = Plant::P2.discrete(INTERVAL_S);
     let rng = host_sim::random::stream(3, 0);

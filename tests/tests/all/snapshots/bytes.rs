@@ -1,4 +1,4 @@
-//! How many bytes a snapshot takes: the table of the book's chapter. `-- --nocapture snapshots::bytes` prints it.
+//! The sizes of snapshots: the table of the book's chapter. `-- --nocapture snapshots::bytes` prints it.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use super::streams::{Kind, visit_all};
 use super::systems::{Sample, Sleeper};
 use super::{Visit, stored};
 
-/// The largest snapshot of each estimator in each kind of number, and the bytes of the estimator itself.
+/// For each estimator and number type: the largest snapshot and the estimator itself, bytes.
 #[derive(Default)]
 struct Sizes(BTreeMap<String, BTreeMap<String, [usize; 2]>>);
 
@@ -22,7 +22,7 @@ impl Visit for Sizes {
         let of = self.0.entry(E::NAME.into()).or_default();
         let sizes = of.entry(E::number().to_string()).or_default();
         *sizes = [largest.max(sizes[0]), size_of::<E>()];
-        // What C sets aside: `KESTIRIM_…_SNAPSHOT`.
+        // The space that C reserves: `KESTIRIM_…_SNAPSHOT`.
         assert!(largest <= size_of::<E>() * 5 / 4 + 64, "{}: {largest} bytes", E::NAME);
     }
 }

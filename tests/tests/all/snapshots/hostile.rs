@@ -1,4 +1,4 @@
-//! Bytes that are no snapshot, and snapshots that were made to do harm: refused, or a bad estimate, never a panic.
+//! Bytes that are not a snapshot, and snapshots that were forged to do harm: refused, or a bad estimate, never a panic.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -10,15 +10,15 @@ use super::streams::{Kind, visit_all};
 use super::systems::{Sample, Sleeper};
 use super::{Awake, Visit};
 
-/// Bytes before the state, and after it.
+/// The number of bytes before the state, and of those after it.
 const HEADER: usize = 42;
 const CHECKSUM: usize = 4;
-/// How often each estimator's snapshot is spoilt; in the short form a quarter of that.
+/// The number of times that each estimator's snapshot is damaged; a quarter of that in the short form.
 const ROUNDS: usize = 100;
-/// Samples that an estimator takes after that.
+/// The number of samples that an estimator takes after that.
 const SAMPLES: usize = 60;
 
-/// The same snapshot with another state, and the checksum that it should have.
+/// Gives a snapshot with a changed state the checksum that it should have.
 fn forged(bytes: &mut [u8]) {
     let end = bytes.len() - CHECKSUM;
     let checksum = crc32fast::hash(&bytes[..end]);
@@ -40,7 +40,7 @@ impl Visit for Spoils {
             for _ in 0..=round % 4 {
                 let room = (bytes.len() - HEADER - CHECKSUM) as u64;
                 let at = HEADER + (rng.next_u64() % room) as usize;
-                // Wild bytes, and the ends of their range.
+                // Random bytes, and the limits of their range.
                 bytes[at] =
                     [rng.next_u32() as u8, 0, 0x7f, 0x80, 0xff][(rng.next_u32() % 5) as usize];
             }
@@ -79,7 +79,7 @@ impl Visit for Tears {
         for _ in 0..50 {
             let at = (rng.next_u64() % whole.len() as u64) as usize;
             assert!(matches!(error(&whole[..at]), Some(Error::TooShort)), "cut at {at}");
-            // A page that was written up to here.
+            // A page that was written up to this position.
             let mut torn = whole.clone();
             torn[at..].fill(0xff);
             assert!(error(&torn).is_some() || torn == whole, "torn at {at}");

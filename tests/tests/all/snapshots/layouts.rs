@@ -1,6 +1,7 @@
-//! Who changes what is stored raises the version: the layouts stand in `layouts.txt`, as they were when it was raised last.
+//! A change of what is stored must raise the version: `layouts.txt` holds the layouts as they were when it was raised
+//! last.
 //!
-//! `KESTIRIM_RECORD_LAYOUTS=1` writes the file anew, after the versions were raised.
+//! `KESTIRIM_RECORD_LAYOUTS=1` rewrites the file, after the versions were raised.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -18,7 +19,7 @@ fn file() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/all/snapshots/layouts.txt")
 }
 
-/// Version and layout of each estimator in single precision, or in the numbers it has.
+/// The version and layout of each estimator, in single precision or in the numbers it has.
 #[derive(Default)]
 struct Layouts(BTreeMap<String, (u16, String)>);
 
@@ -28,7 +29,7 @@ impl Visit for Layouts {
         if number != "f32" && E::NAME != "ppp" || self.0.contains_key(E::NAME) {
             return;
         }
-        // After half of its stream all that may be there is there.
+        // After half of its stream every optional part is present.
         for sample in &samples[..samples.len() / 2] {
             estimator.take(sample);
         }
@@ -59,7 +60,7 @@ impl Layouts {
     }
 }
 
-/// What is to be done about a layout that is not as it was recorded.
+/// What to do about a layout that differs from the recorded one.
 fn advice(name: &str, recorded: Option<&(u16, String)>, now: &(u16, String)) -> Option<String> {
     let again = format!("run this test with {RECORD}=1");
     match recorded {

@@ -1,5 +1,6 @@
-//! Estimators that sleep: a stream is cut at twenty random places, the estimator is stored there and loaded, and all that
-//! it estimates afterwards is what it would have been, to the bit. `cargo test -p kestirim-tests --test all snapshots::`
+//! Snapshots of estimators: a stream is cut at twenty random places, where the estimator is stored and loaded; all
+//! later estimates equal those without the interruption, bit for bit.
+//! `cargo test -p kestirim-tests --test all snapshots::`
 
 mod bytes;
 mod hostile;
@@ -20,16 +21,16 @@ use rand_core::Rng;
 use streams::Kind;
 use systems::{Sample, Sleeper};
 
-/// How often a stream is cut.
+/// The number of times that a stream is cut.
 const CUTS: usize = 20;
 
-/// What is done with each estimator.
+/// A test to be run on each estimator.
 trait Visit {
-    /// With an estimator that has not begun, and what it is fed with.
+    /// Tests an estimator that has not begun, with its stream of samples.
     fn visit<E: Sleeper>(&mut self, kind: &Kind, estimator: E, samples: &[Sample]);
 }
 
-/// A snapshot in as many bytes as it takes.
+/// A snapshot, exactly as large as needed.
 fn stored<E: Sleeper>(estimator: &E) -> Vec<u8> {
     let mut bytes = vec![0; size(estimator).expect("a size")];
     let length = store(estimator, &mut bytes).expect("there is room").len();
@@ -37,7 +38,7 @@ fn stored<E: Sleeper>(estimator: &E) -> Vec<u8> {
     bytes
 }
 
-/// Random places of a stream, each once, in its order.
+/// Random places of a stream, each once, in order.
 fn places(seed: u64, length: usize) -> Vec<usize> {
     let mut rng = host_sim::random::stream(seed, 22);
     let mut places = Vec::new();
@@ -51,13 +52,13 @@ fn places(seed: u64, length: usize) -> Vec<usize> {
     places
 }
 
-/// An estimator that did not sleep.
+/// The reference: an estimator without interruptions.
 struct Awake {
-    /// What it said after each sample.
+    /// A digest of its estimate after each sample.
     said: Vec<u64>,
-    /// Where it was stored, with its snapshot.
+    /// The places at which it was stored, with its snapshots.
     snapshots: Vec<(usize, Vec<u8>)>,
-    /// What it is in the end.
+    /// Its snapshot at the end.
     end: Vec<u8>,
 }
 
@@ -74,7 +75,8 @@ impl Awake {
     }
 }
 
-/// An estimator that sleeps at each place goes on as one that did not; how large its largest snapshot is, in bytes.
+/// Checks that an estimator restored at each place goes on as the uninterrupted one; returns the size of its largest
+/// snapshot, bytes.
 fn sleep<E: Sleeper>(name: &str, estimator: E, samples: &[Sample], seed: u64) -> usize {
     let awake = Awake::over(estimator, samples, &places(seed, samples.len()));
     assert_eq!(awake.snapshots.len(), CUTS);
@@ -111,7 +113,7 @@ fn what_slept_goes_on_to_the_bit() {
     streams::visit_all(&mut Sleeps);
 }
 
-/// The same estimator, had its layout changed.
+/// The same estimator with a changed layout.
 #[derive(serde::Serialize, serde::Deserialize)]
 struct Newer<E>(E);
 

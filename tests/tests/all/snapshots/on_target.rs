@@ -1,7 +1,8 @@
-//! Estimators that sleep on the host and wake on an emulated Cortex-M4F: what they estimate there is to the bit what they would
-//! have estimated on the host, and so is what they are in the end.
+//! Estimators that are stored on the host and restored on an emulated Cortex-M4F: their estimates there equal those on
+//! the host bit for bit, and so does their final state.
 //!
-//! On a machine without the tools this test says SKIPPED and passes; with `KESTIRIM_REQUIRE_TARGETS=1` it fails instead.
+//! On a machine without the tools this test prints SKIPPED and passes; with `KESTIRIM_REQUIRE_TARGETS=1` it fails
+//! instead.
 
 use std::time::Instant;
 
@@ -13,7 +14,7 @@ use super::streams::{Kind, visit_all};
 use super::systems::{Digest, Sample, Sleeper};
 use super::{Awake, CUTS, Visit, places, stored};
 
-/// What the image of a kind reads, and what it is to tell.
+/// The input of the image for a kind of estimator, and the expected output.
 struct Part {
     name: String,
     stream: Vec<u8>,
@@ -26,7 +27,7 @@ impl Part {
         self.stream.extend(bytes);
     }
 
-    /// One that wakes from this snapshot, and what the host says from there on.
+    /// Adds an estimator that is restored from this snapshot, and the host's estimates from there on.
     fn wake<E: Sleeper>(&mut self, image: u8, snapshot: &[u8], samples: &[Sample], said: &[u64]) {
         self.record(&[image]);
         self.record(snapshot);

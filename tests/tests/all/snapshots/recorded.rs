@@ -1,4 +1,4 @@
-//! The same with what was recorded, from `../shared/data` beside the repository.
+//! Snapshots in the middle of recorded streams, from `../shared/data` beside the repository.
 
 use host_sim::systems::pedestrian::recording::log;
 use host_sim::systems::robot::recording::{anchors, ranges};

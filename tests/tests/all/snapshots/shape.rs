@@ -1,4 +1,4 @@
-//! How a value is laid out: a format that writes names and types of fields instead of what is in them.
+//! The layout of a value: a serialisation format that writes names and types of fields instead of their contents.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -6,20 +6,20 @@ use std::fmt::Display;
 use serde::Serialize;
 use serde::ser::{self, Error as _, Serializer};
 
-/// What an option without a value holds: unknown.
+/// The unknown type of an option without a value.
 const UNKNOWN: &str = "?";
 
-/// The types that a value is made of, each by its name: its fields, or the variants that were seen.
+/// The types that a value consists of, by name: their fields, or the variants that occurred.
 pub(super) type Types = BTreeMap<String, String>;
 
-/// The type of a value, and of all that is in it.
+/// The type of a value, and all types in it.
 pub(super) fn of(value: &impl Serialize) -> (String, Types) {
     let mut types = Types::new();
     let name = value.serialize(Shape(&mut types)).expect("a shape");
     (name, types)
 }
 
-/// What is known of a type, from several of its values.
+/// Combines what several values of a type reveal about it.
 fn learn(types: &mut Types, name: &str, fields: String) -> String {
     let known = types.entry(name.to_owned()).or_insert_with(|| fields.clone());
     if known.matches(UNKNOWN).count() > fields.matches(UNKNOWN).count() {
@@ -83,7 +83,8 @@ impl<'a> Serializer for Shape<'a> {
         Ok(name.into())
     }
 
-    // Which variant it is now depends on the stream: of an enum, the name and the numbers of its variants are told.
+    // The current variant depends on the stream, so only the name of the enum and the numbers of its variants are
+    // written.
     fn serialize_unit_variant(
         self,
         name: &'static str,
@@ -164,7 +165,7 @@ impl<'a> Serializer for Shape<'a> {
     }
 }
 
-/// What has parts.
+/// A type with parts.
 enum Of {
     Sequence,
     Tuple,
@@ -193,7 +194,7 @@ impl Parts<'_> {
         let Self { types, kind, found: parts } = self;
         let known = |parts: &[String]| parts.iter().find(|part| !part.contains(UNKNOWN)).cloned();
         let first = known(&parts).or_else(|| parts.first().cloned()).unwrap_or(UNKNOWN.into());
-        // Of an array, some options may have a value now.
+        // Some options of an array may have a value.
         let is_array = parts.iter().all(|part| *part == first || part.contains(UNKNOWN));
         match kind {
             Of::Sequence => format!("up to so many {first}"),

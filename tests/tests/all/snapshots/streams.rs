@@ -1,4 +1,4 @@
-//! What estimators are fed with, and how each begins.
+//! The input streams of the estimators, and their initial states.
 
 use kestirim_air_to_ground::{Channel, Environment};
 use kestirim_luenberger::Predictor;
@@ -23,16 +23,16 @@ use target_bench::streams::{PLACES, circle, ellipse, fly, walk};
 use super::Visit;
 use super::systems::{Drawing, SATELLITES, Sample, Sleeper};
 
-/// Between two samples of a flight, s.
+/// The time between two samples of a flight, s.
 const FLIGHT_INTERVAL: f64 = 0.01;
-/// Epochs of positioning.
+/// The number of epochs of positioning.
 const EPOCHS: usize = 40;
 
-/// Which estimator it is.
+/// Identifies an estimator.
 pub(super) struct Kind {
-    /// By what the image knows it, if it does.
+    /// The number by which the image knows it, if it does.
     pub(super) image: Option<u8>,
-    /// What the places are drawn with at which it sleeps.
+    /// The seed of the places at which it is stored.
     pub(super) seed: u64,
 }
 
@@ -45,7 +45,7 @@ fn inertial() -> Vec<Sample> {
     walk().iter().map(sample).collect()
 }
 
-/// Ranges to four anchors, and wheels between them if there are any.
+/// Ranges to four anchors, with wheel speeds between them if there are any.
 fn ranges(has_wheels: bool) -> Vec<Sample> {
     let mut time_us = 0;
     let mut samples = Vec::new();
@@ -150,7 +150,7 @@ fn positioning() -> PppFilter<{ states(SATELLITES) }> {
     PppFilter::new(PppConfig::new(Moving::Static))
 }
 
-/// All estimators, with their streams: those that the image knows by number, and others that only the host has.
+/// Visits all estimators with their streams: those that the image knows by number, and those that only the host has.
 pub(super) fn visit_all(visitor: &mut impl Visit) {
     fn each<E: Sleeper>(
         visitor: &mut impl Visit,

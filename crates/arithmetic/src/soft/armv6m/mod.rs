@@ -1,8 +1,8 @@
-//! Single precision for Cortex-M0 and M0+, which have no floating-point unit: the routines of Arm's run-time ABI that compilers
-//! call for it. Numbers of everyday size are served in assembler, all others by [`every_case`].
+//! Single precision for Cortex-M0 and M0+, which have no floating-point unit: the routines of Arm's run-time ABI that
+//! compilers call for it. Numbers of everyday size are handled in assembler, all others by [`every_case`].
 //!
-//! Weak symbols, as the compiler's own are, behind which these stand in the order of linking: whoever brings others that
-//! are not weak, such as those in a chip's ROM, gets those.
+//! The symbols are weak, like the compiler's own, which come after these in link order. Strong symbols of the same
+//! names from elsewhere, such as those in a chip's ROM, take precedence.
 
 use super::every_case;
 
@@ -18,7 +18,7 @@ extern "C" fn divide(a: u32, b: u32) -> u32 {
     every_case::divide(a, b)
 }
 
-#[allow(unsafe_code)] // Symbols with the names that compilers call; and carries, which Rust does not have.
+#[allow(unsafe_code)] // Defines symbols that compilers call; needs carries, which Rust lacks.
 mod routines {
     // SAFETY: the routines keep to the procedure call standard: they change r0 to r3, r12 and the flags alone, and leave the
     // stack as it was; every branch stays within its file or calls a function of that standard. The compiler's routines

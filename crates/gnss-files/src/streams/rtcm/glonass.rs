@@ -1,4 +1,4 @@
-//! Observations of GLONASS, whose messages tell the time of Moscow, and not all of them satellites' channels.
+//! Observations of GLONASS, whose messages give Moscow time, and only some of them the satellites' channels.
 
 use std::collections::BTreeMap;
 
@@ -7,11 +7,11 @@ use crate::observations::{CHANNELS, Raw, Signal, channel_scale};
 use crate::streams::{Locks, WEEK_MS};
 use crate::system::System;
 
-/// Moscow's time ahead of UTC, ms.
+/// Moscow time minus UTC, ms.
 const MOSCOW: i64 = 10_800_000;
 const DAY: i64 = 86_400_000;
 
-/// What was observed, until it is known by how much UTC is behind.
+/// Observations that are held until the offset of UTC from GPS time is known.
 #[derive(Debug, Default)]
 pub(super) struct OfGlonass {
     cells: Vec<Cell>,
@@ -20,22 +20,22 @@ pub(super) struct OfGlonass {
 
 #[derive(Debug)]
 struct Cell {
-    /// The place of the epoch before it.
+    /// The index of the epoch before the observation.
     place: usize,
-    /// In Moscow, since Sunday, ms.
+    /// Moscow time since the beginning of Sunday, ms.
     time: i64,
     satellite: u8,
-    /// Phases as if on channel 0.
+    /// The observation; a phase as if on channel 0.
     raw: Raw,
 }
 
 impl OfGlonass {
-    /// ms since Sunday by the day of the week, if that is told, and the ms of the day.
+    /// Time since the beginning of Sunday, ms, from the day of the week, if that is known, and the ms of the day.
     pub(super) fn time(day: Option<u8>, milliseconds: u32) -> Option<i64> {
         Some(DAY * i64::from(day?) + i64::from(milliseconds))
     }
 
-    /// Takes note of a satellite's channel, if there is such a one.
+    /// Notes a satellite's channel, if the channel exists.
     pub(super) fn on(&mut self, number: u8, channel: Option<i8>) {
         let channel = channel.filter(|channel| CHANNELS.contains(channel));
         if let (Some(satellite), Some(channel)) = (System::Glonass.number(number), channel) {
@@ -43,7 +43,7 @@ impl OfGlonass {
         }
     }
 
-    /// Takes in a signal behind `epochs` epochs: its code and its phase, ms.
+    /// Adds a signal that follows `epochs` epochs: its code and its phase, ms.
     pub(super) fn take(
         &mut self,
         (epochs, time): (usize, i64),
@@ -65,13 +65,13 @@ impl OfGlonass {
         }
     }
 
-    /// Puts everything to the epochs of the same instants, which GPS's time has `ahead` of UTC, ms. What is of no epoch of other
-    /// systems is left out.
+    /// Adds all observations to the epochs of the same instants; GPS time is `ahead` of UTC, ms. Observations without
+    /// an epoch of other systems are left out.
     pub(super) fn join(self, epochs: &mut [Epoch], ahead: i64) -> BTreeMap<u8, i8> {
         let Self { cells, channels } = self;
         for Cell { place, time, satellite, mut raw } in cells {
             let time = (time - MOSCOW + ahead).rem_euclid(WEEK_MS);
-            // A message of GLONASS may come first in an epoch, or behind the first one of the next.
+            // A GLONASS message may come first in an epoch, or after the first message of the next.
             let near = epochs.iter_mut().skip(place.saturating_sub(1)).take(3);
             let Some((_, satellites)) = near.into_iter().find(|(of, _)| *of == time) else {
                 continue;

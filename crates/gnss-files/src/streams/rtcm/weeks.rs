@@ -1,18 +1,21 @@
-//! Weeks, which messages of observations do not tell, and those of ephemerides only modulo 1024 or of another time.
+//! Resolution of weeks: observation messages do not give them, and ephemerides give them only modulo 1024 or in another
+//! time system.
 
 use super::Epoch;
 use super::ephemerides::{ROLLOVER, WEEK};
 use crate::navigation::{Ephemeris, Message as Of};
 use crate::time::GpsTime;
 
-/// Half a week, ms: farther back time does not go.
+/// Half a week, ms: time does not step farther back than this.
 const HALF_WEEK: i64 = 302_400_000;
-/// The same in s.
+/// Half a week, s.
 const HALF_WEEK_S: f64 = 302_400.0;
 
-/// The place of an epoch, and an instant near it, by the ephemerides of Galileo and BeiDou, or of GPS; `seconds` are those of the epochs in
-/// their weeks. Some senders tell the week of the transmission, as satellites do, others that of the ephemeris: those are
-/// preferred of which both are the same.
+/// The index of an epoch, and an instant near it, from the ephemerides of Galileo and BeiDou, or of GPS; `seconds` are
+/// those of the epochs in their weeks.
+///
+/// Some senders give the week of the transmission, as satellites do, others that of the ephemeris: ephemerides for
+/// which both are the same are preferred.
 pub(super) fn dated(
     ephemerides: &[(usize, u8, Ephemeris)],
     seconds: &[f64],
@@ -28,7 +31,7 @@ pub(super) fn dated(
     Some((*place, GpsTime::new(told.time.day(), told.time.second() + away)))
 }
 
-/// ms from the first epoch to each.
+/// The time from the first epoch to each, ms.
 pub(super) fn elapsed(epochs: &[Epoch]) -> Vec<i64> {
     let mut before = epochs.first().map_or(0, |(time, _)| *time);
     let mut elapsed = 0;
@@ -41,18 +44,19 @@ pub(super) fn elapsed(epochs: &[Epoch]) -> Vec<i64> {
     steps.collect()
 }
 
-/// The time of an ephemeris in the week in which it is within half a week of an epoch: the week told is at most one off.
+/// The time of an ephemeris moved to the week in which it is within half a week of an epoch; the transmitted week is at
+/// most one off.
 pub(super) fn in_week_of(time: GpsTime, epoch: GpsTime) -> GpsTime {
     let away = (epoch.since(time) / (2.0 * HALF_WEEK_S)).round().clamp(-1.0, 1.0);
     GpsTime::new(time.day() + WEEK * away as i32, time.second())
 }
 
-/// Seconds since a week of GPS began.
+/// The time since the beginning of the GPS week, s.
 pub(super) fn second_of_week(time: GpsTime) -> f64 {
     f64::from((time.day() - GpsTime::EPOCH.day()).rem_euclid(WEEK)) * 86_400.0 + time.second()
 }
 
-/// The same time in the 1024 weeks that are nearest to another one.
+/// The time moved by multiples of 1024 weeks to be nearest to `near`.
 pub(super) fn rolled_to(time: GpsTime, near: GpsTime) -> GpsTime {
     let away = f64::from(near.day() - time.day()) / f64::from(WEEK * ROLLOVER);
     GpsTime::new(time.day() + away.round() as i32 * WEEK * ROLLOVER, time.second())

@@ -22,7 +22,7 @@ pub(super) fn fmt(kind: u8, name: &str, format: &str, labels: &str, length: u8) 
     message
 }
 
-/// A message of an inertial sensor, as new programs write it.
+/// A message of an inertial sensor, as recent versions write it.
 pub(super) fn imu(number: u8, [t, ax, ay, az, gx, gy, gz]: [f64; 7]) -> Vec<u8> {
     let mut message = vec![0xa3, 0x95, 130];
     message.extend(((t * 1e6).round() as u64 + 5_000_000).to_le_bytes());
@@ -37,7 +37,7 @@ pub(super) fn imu(number: u8, [t, ax, ay, az, gx, gy, gz]: [f64; 7]) -> Vec<u8> 
     message
 }
 
-/// A log with three sensors, of which the last are turned, and other messages.
+/// A log with three sensors, the last two of which are rotated, and other messages.
 pub(super) fn log(rows: &[[f64; 7]]) -> Vec<u8> {
     let mut log = fmt(128, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns", 89);
     log.extend(fmt(130, "IMU", FORMAT, LABELS, 54));
@@ -142,7 +142,7 @@ fn a_log_of_text_is_the_walk() {
 fn damage_is_skipped_and_counted() {
     let rows = walk::rows(super::STRIDES);
     let mut bytes = log(&rows);
-    // Behind three formats and two messages of another kind.
+    // The record after three formats and two messages of another kind.
     let record = 3 * 89 + 2 * 14 + 54 * 300;
     bytes[record + 1] = 0;
     bytes.truncate(bytes.len() - 10);
@@ -154,7 +154,7 @@ fn damage_is_skipped_and_counted() {
     );
     assert!(sentences[1].starts_with("1 record cut off was skipped: record "), "{sentences:?}");
     assert!(log.samples.len() >= rows.len() - 2);
-    // A stretch of another file.
+    // A stretch of foreign bytes.
     let mut much = bytes.clone();
     much.splice(record..record, vec![7; bytes.len() / 10]);
     let sentence = refusal(&much);

@@ -1,4 +1,4 @@
-//! Flights as autopilots log them: the same rows as are written, and what the log lacks is told.
+//! Flights as autopilots log them: the rows read are those written, and what the log lacks is reported.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use super::ardupilot::{FORMAT, LABELS, fmt, imu};
 use super::px4::{data, header, micros, singles, topic};
 use super::{MANY_SEEDS, SEEDS, survives_reading};
 
-/// α, q, V, θ, δe, δt at a time.
+/// α, q, V, θ, δe, δt of the flight at a time.
 fn flown(t: f64) -> [f64; 6] {
     let (slow, fast) = ((0.4 * t).sin(), (2.0 * t).sin());
     [
@@ -26,7 +26,7 @@ fn times() -> impl Iterator<Item = (usize, f64)> {
     (0..400).map(|k| (k, k as f64 * 0.02))
 }
 
-/// 25° of 4500.
+/// The elevator deflection per unit of command, degrees: 25° for 4500.
 const TRAVEL_DEG: f64 = 25.0 / 4500.0;
 
 fn options(units: &str) -> Options {
@@ -43,7 +43,7 @@ fn read(bytes: &[u8], options: &Options) -> Result<Flight, String> {
         .map_err(|it| it.to_string())
 }
 
-/// A message of `ArduPilot` with a time and numbers of four bytes.
+/// A message of `ArduPilot` with a time and four-byte numbers.
 fn message(kind: u8, t: f64, number: Option<u8>, values: &[f64]) -> Vec<u8> {
     let mut message = vec![0xa3, 0x95, kind];
     message.extend(((t * 1e6).round() as u64 + 5_000_000).to_le_bytes());
@@ -86,7 +86,7 @@ fn ardupilot(is_with_alpha: bool) -> Vec<u8> {
     log
 }
 
-/// Fails if a row is not what was flown.
+/// Fails unless the rows are those of the flight.
 fn assert_flown(flight: &Flight, offset_us: i64, tolerance: [f64; 4], has: [bool; 4]) {
     assert_eq!((flight.rows.len(), flight.has), (400, has));
     for ((k, t), row) in times().zip(&flight.rows) {
@@ -300,12 +300,12 @@ fn damage_is_skipped_and_counted() {
         "{:?}",
         flight.damage
     );
-    // Of a stretch of rubbish more is lost than may be.
+    // A stretch of garbage loses more than is allowed.
     bytes.splice(at..at, vec![7; bytes.len() / 10]);
     assert!(read(&bytes, &said()).unwrap_err().contains("damaged records"));
 }
 
-/// What is read is in order, and what is refused is so in one sentence.
+/// Fails unless the rows that are read are in order, and refusals are one sentence.
 fn assert_harmless(log: &[u8], seed: u64) {
     for units in ["delta_e=-0.0056deg", "delta_e=-25deg"] {
         match flight::read(log, &options(units)) {

@@ -1,21 +1,21 @@
 //! The message `Imu` of ROS as programs write it.
 
-/// When the walk began, s since 1970.
+/// The beginning of the walk, s since 1970.
 pub(super) const START: f64 = 1_700_000_000.0;
 
-/// Seconds and nanoseconds of a time of the walk.
+/// The seconds and nanoseconds of a time of the walk.
 pub(super) fn stamp(t: f64) -> (u32, u32) {
     let nanoseconds = (t * 1e9).round() as u64;
     (START as u32 + (nanoseconds / 1_000_000_000) as u32, (nanoseconds % 1_000_000_000) as u32)
 }
 
-/// When a message was received, ns since 1970.
+/// The time at which a message was received, ns since 1970.
 pub(super) fn receipt(t: f64) -> u64 {
     let (seconds, nanoseconds) = stamp(t);
     u64::from(seconds) * 1_000_000_000 + u64::from(nanoseconds)
 }
 
-/// The numbers behind the header.
+/// The numbers that follow the header.
 fn numbers([_, ax, ay, az, gx, gy, gz]: [f64; 7], bytes: fn(f64) -> [u8; 8]) -> Vec<u8> {
     let mut numbers = vec![0.0, 0.0, 0.0, 1.0];
     numbers.extend([0.01; 9]);
@@ -26,7 +26,7 @@ fn numbers([_, ax, ay, az, gx, gy, gz]: [f64; 7], bytes: fn(f64) -> [u8; 8]) -> 
     numbers.into_iter().flat_map(bytes).collect()
 }
 
-/// As ROS 1 writes it.
+/// A message as ROS 1 writes it.
 pub(super) fn ros1(sequence: u32, (seconds, nanoseconds): (u32, u32), row: [f64; 7]) -> Vec<u8> {
     let mut message = [sequence, seconds, nanoseconds, 8].map(u32::to_le_bytes).concat();
     message.extend(b"imu_link");
@@ -34,7 +34,7 @@ pub(super) fn ros1(sequence: u32, (seconds, nanoseconds): (u32, u32), row: [f64;
     message
 }
 
-/// As ROS 2 writes it, in either order, whatever the frame's length.
+/// A message as ROS 2 writes it, in either byte order, with a frame name of any length.
 pub(super) fn cdr(
     frame: &str,
     is_big: bool,

@@ -1,4 +1,5 @@
-//! Levels with places in bags of ROS 1 and MCAP files, by the definitions of the messages: the same as are written.
+//! Levels with positions in bags of ROS 1 and MCAP files, by the definitions of the messages: those read are those
+//! written.
 
 use std::collections::BTreeMap;
 
@@ -15,10 +16,10 @@ use super::{MANY_SEEDS, SEEDS, survives_reading};
 const FIX: &str = "uint8 COVARIANCE_TYPE_UNKNOWN = 0\nstd_msgs/Header header\nsensor_msgs/NavSatStatus status\n\
     float64 latitude\nfloat64 longitude\nfloat64 altitude\nfloat64[9] position_covariance\nuint8 position_covariance_type\n\
     ================================\nMSG: sensor_msgs/NavSatStatus\nint8 STATUS_NO_FIX=-1\nint8 status\nuint16 service\n";
-/// Of `mavros_msgs`, shortened behind the levels.
+/// The definition from `mavros_msgs`, shortened behind the levels.
 const RADIO: &str = "std_msgs/Header header\nuint8 rssi\nuint8 remrssi\nfloat32 rssi_dbm\n";
 
-/// A topic with its type and definition.
+/// The name, type and definition of a topic.
 type Topic = (&'static str, &'static str, &'static str);
 
 const PLACES: Topic = ("/gps/fix", "sensor_msgs/NavSatFix", FIX);
@@ -26,7 +27,7 @@ const HEIGHTS: Topic = ("/mavros/global_position/rel_alt", "std_msgs/Float64", "
 const LEVELS: Topic = ("/lte/rx_power_dbm", "std_msgs/Float64", "");
 const STATUS: Topic = ("/mavros/radio_status", "mavros_msgs/RadioStatus", RADIO);
 
-/// A moment: s, latitude, longitude, height, level.
+/// The moments of the log: time in s, latitude, longitude, height, level.
 fn moments() -> Vec<[f64; 5]> {
     let moment = |k: u32| {
         let t = f64::from(k) * 0.5;
@@ -37,7 +38,7 @@ fn moments() -> Vec<[f64; 5]> {
 }
 
 fn fix(is_cdr: bool, [t, latitude, longitude, height, _]: [f64; 5], status: i8) -> Vec<u8> {
-    // Past the date line.
+    // Beyond the date line.
     let longitude = if longitude > 180.0 { longitude - 360.0 } else { longitude };
     let pen = Pen::new(is_cdr).header(t, "gps").put(status.to_le_bytes()).put([1, 0]);
     let numbers = [latitude, longitude, height + 812.5].into_iter().chain([1.0; 9]);
@@ -53,10 +54,10 @@ fn status(is_cdr: bool, [t, .., level]: [f64; 5]) -> Vec<u8> {
     pen.single(level).message()
 }
 
-/// A message on a topic at a time: its topic's place, s, the message of ROS 1 or in CDR.
+/// A message on a topic: the topic's index, the time in s, the writer for ROS 1 or CDR, and the moment that it holds.
 type Sent = (usize, f64, fn(bool, [f64; 5]) -> Vec<u8>, [f64; 5]);
 
-/// As bags of ROS 1, plain and packed, and as MCAP of ROS 2.
+/// The same messages as bags of ROS 1, uncompressed and compressed, and as MCAP of ROS 2.
 fn files(topics: &[Topic], sent: &[Sent]) -> [Vec<u8>; 3] {
     let mut records = Vec::new();
     let mut mcap = file(true);
@@ -74,7 +75,7 @@ fn files(topics: &[Topic], sent: &[Sent]) -> [Vec<u8>; 3] {
     [bag(&records, "", <[u8]>::to_vec), bag(&records, "lz4", lz4), bytes(mcap)]
 }
 
-/// Places and heights twice a second, levels between them.
+/// Positions and heights twice a second, with levels between them.
 fn sent(level: fn(bool, [f64; 5]) -> Vec<u8>) -> Vec<Sent> {
     let mut sent: Vec<Sent> = Vec::new();
     for pair in moments().windows(2) {
@@ -115,7 +116,7 @@ fn levels_are_heard_where_they_were() {
     {
         for file in files(&[PLACES, HEIGHTS, topic], &sent(level)) {
             let log = read(&file, &Options::default()).unwrap();
-            // Behind the last place nothing is known.
+            // Beyond the last position nothing is known.
             assert_eq!((log.heard.len(), log.damage.count(), log.are_losses), (118, 0, false));
             let first = log.heard[0].time_us - 250_000;
             for (found, pair) in log.heard.iter().zip(moments().windows(2)) {
@@ -173,7 +174,7 @@ fn what_is_open_is_refused() {
     assert!((log.heard[0].height - 842.625).abs() < 1e-5, "{:?}", log.heard[0]);
     let of_names = refused(&all, &without(2), &none);
     assert!(of_names.contains("expected levels as a topic of a number"), "{of_names}");
-    // A level of anything, and one in a radio's own units.
+    // A level that may mean anything, and one in a radio's own units.
     let doubtful = [PLACES, HEIGHTS, ("/radio/level", "std_msgs/Float64", "float64 data")];
     let sentence = refused(&doubtful, &sent(plain), &none);
     assert!(
@@ -199,7 +200,7 @@ fn what_is_open_is_refused() {
         read(&files(&own, &of_radio)[0], &options("", "rssi_db=dB")).unwrap().heard[0].level,
         187.0
     );
-    // Two of them.
+    // Two topics of levels.
     let two = [PLACES, HEIGHTS, LEVELS, ("/b/rssi", "std_msgs/Float64", "float64 data")];
     let mut of_two = sent(plain);
     of_two.push((3, 1.0, plain, moments()[2]));
@@ -211,7 +212,7 @@ fn what_is_open_is_refused() {
     assert_eq!(levels::read(b"t,lat,lon,h,rssi_db\n", &none), Ok(None));
 }
 
-/// What is refused is so in one sentence.
+/// Fails unless the levels that are read are in order and finite, and refusals are one sentence.
 fn assert_harmless(file: &[u8], seed: u64) {
     match levels::read(file, &Options::default()) {
         Ok(Some(log)) => {

@@ -1,4 +1,4 @@
-//! MCAP, written by the crate of that name.
+//! MCAP files written by the crate `mcap`.
 
 use std::collections::BTreeMap;
 use std::io::{Cursor, Write as _};
@@ -35,7 +35,7 @@ pub(super) fn bytes(mut file: File) -> Vec<u8> {
     file.into_inner().into_inner()
 }
 
-/// A recording of ROS 2 with another topic.
+/// A recording of ROS 2 with a second topic.
 fn ros2(rows: &[[f64; 7]], chunks: bool) -> Vec<u8> {
     let mut file = file(chunks);
     let imu = channel(&mut file, "/imu/data", "sensor_msgs/msg/Imu", "cdr");
@@ -49,7 +49,7 @@ fn ros2(rows: &[[f64; 7]], chunks: bool) -> Vec<u8> {
     bytes(file)
 }
 
-/// The same with its chunks packed.
+/// The same file with its chunks compressed.
 fn packed(file: &[u8], name: &str, pack: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
     let mut packed = file[..8].to_vec();
     let mut at = 8;
@@ -58,7 +58,7 @@ fn packed(file: &[u8], name: &str, pack: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
         let (kind, body) = (file[at], &file[at + 9..at + 9 + length]);
         let mut new = body.to_vec();
         if kind == 6 {
-            // Behind times, size and checksum stand the name of no compression and a length.
+            // Times, size and checksum are followed by an empty compression name and a length.
             let records = pack(&body[28 + 4 + 8..]);
             new.truncate(28);
             new.extend((name.len() as u32).to_le_bytes());
@@ -82,7 +82,7 @@ fn lz4(bytes: &[u8]) -> Vec<u8> {
 }
 
 fn zstd(bytes: &[u8]) -> Vec<u8> {
-    // In two frames, as a writer may do.
+    // In two frames, as a writer may produce them.
     let halves = bytes.split_at(bytes.len() / 2);
     [halves.0, halves.1].map(|half| compress_to_vec(half, CompressionLevel::Fastest)).concat()
 }
@@ -118,7 +118,7 @@ fn every_encoding_is_the_walk() {
             assert_same(&read(&bytes(file)).unwrap(), &plain(&rows), 0.0);
         }
     }
-    // Without stamps the times of receipt are taken.
+    // Without stamps the times of receipt are used.
     let mut file = file(true);
     let imu = channel(&mut file, "/imu", "sensor_msgs/Imu", "ros1");
     for &row in &rows {
@@ -180,7 +180,7 @@ fn results_are_not_sensors() {
     );
 }
 
-/// A field of protobuf that is a text or a message, with its number.
+/// A protobuf field that is a text or a message, with its number.
 fn part(number: u8, value: &[u8]) -> Vec<u8> {
     let length = value.len();
     // A length of more than 127 takes two bytes.
@@ -191,7 +191,7 @@ fn part(number: u8, value: &[u8]) -> Vec<u8> {
     [&[number << 3 | 2][..], &length, value].concat()
 }
 
-/// What `host-sim --mcap` writes of a walk: `FileDescriptorSet` and messages of doubles, beside its results.
+/// A walk as `host-sim --mcap` writes it: `FileDescriptorSet` and messages of doubles, beside other results.
 fn own(rows: &[[f64; 7]], columns: &[&str]) -> Vec<u8> {
     let field = |(number, name): (u8, &&str)| {
         let numbers = vec![3 << 3, number, 4 << 3, 1, 5 << 3, 1];
@@ -253,7 +253,7 @@ fn damage_is_skipped_and_counted() {
     let log = read(&bytes).unwrap();
     assert!(log.samples.len() >= rows.len() - 3);
     assert!(log.damage.sentences()[0].contains("torn (unreadable)"), "{:?}", log.damage);
-    // A chunk whose checksum is wrong is more than a hundredth of so short a file.
+    // A chunk with a wrong checksum is more than a hundredth of so short a file.
     let mut bytes = ros2(&rows, true);
     let at = bytes.len() / 4;
     bytes[at] ^= 1;

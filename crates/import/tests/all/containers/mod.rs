@@ -1,5 +1,5 @@
-//! Files that are no table of text: the walk, written in each format, is read as from plain text; what is damaged, missing or
-//! ambiguous is told or refused.
+//! Binary and archive files: the walk, written in each format, is read as from plain text; what is damaged, missing or
+//! ambiguous is reported or refused.
 
 mod ardupilot;
 mod flights;
@@ -19,9 +19,9 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::{mutations, walk};
 
-/// Strides of the walk.
+/// The number of strides of the walk.
 const STRIDES: usize = 8;
-/// What four bytes hold of a number, of at most 100.
+/// The rounding error of a four-byte number of at most 100.
 const SINGLE: f64 = 1e-5;
 
 fn read(bytes: &[u8]) -> Result<Inertial, Error> {
@@ -40,14 +40,15 @@ fn told(log: &Inertial) -> String {
     log.conclusions.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
 }
 
-/// The samples that plain text gives.
+/// The samples as read from plain text.
 fn plain(rows: &[[f64; 7]]) -> Vec<Sample> {
     let rows = rows.iter().map(|row| row.map(|value| value.to_string()).join(",") + "\n");
     let text = "t,ax,ay,az,gx,gy,gz\n".to_owned() + &rows.collect::<String>();
     read(text.as_bytes()).expect("plain text").samples
 }
 
-/// Fails if samples differ by more than this, or by more than a microsecond; times may begin elsewhere.
+/// Fails if samples differ by more than `tolerance`, or times by more than a microsecond; the origin of times may
+/// differ.
 fn assert_same(log: &Inertial, expected: &[Sample], tolerance: f64) {
     assert_eq!(log.samples.len(), expected.len());
     let offset = log.samples[0].time_us - expected[0].time_us;
@@ -59,12 +60,12 @@ fn assert_same(log: &Inertial, expected: &[Sample], tolerance: f64) {
     }
 }
 
-/// Damages a file by so many seeds: nothing panics or hangs, and what is read is in order.
+/// Damages a file once for each seed: nothing panics or hangs, and what is read is in order.
 fn survives(file: &[u8], seeds: std::ops::Range<u64>) {
     survives_reading(file, seeds, mutations::read);
 }
 
-/// The same by another reader.
+/// Damages a file once for each seed and reads it with `read`.
 fn survives_reading(file: &[u8], seeds: std::ops::Range<u64>, read: fn(&[u8], u64)) {
     const LENGTHS: [&[u8]; 4] =
         [b"\xff\xff\xff\xff", b"\xff\xff\xff\x7f\0\0\0\0", b"\0\0\0\0", b"\xff"];
@@ -72,7 +73,7 @@ fn survives_reading(file: &[u8], seeds: std::ops::Range<u64>, read: fn(&[u8], u6
         let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
         let mut log = file.to_vec();
         for _ in 0..=mutations::pick(&mut random, 4) {
-            // Half of the harm is done where the file tells what it holds.
+            // Half of the damage is done where the file describes its contents.
             let beginning = mutations::pick(&mut random, 2) == 0;
             let end = if beginning { log.len().min(600) } else { log.len() };
             let mut part = log[..end].to_vec();
@@ -85,7 +86,7 @@ fn survives_reading(file: &[u8], seeds: std::ops::Range<u64>, read: fn(&[u8], u6
             } else {
                 mutations::mutate(&mut random, &mut part);
             }
-            // A cut in the beginning cuts the file.
+            // If the beginning is cut, so is the file.
             let rest = if part.len() + 100 < end { Vec::new() } else { log[end..].to_vec() };
             log = [part, rest].concat();
         }
@@ -93,12 +94,13 @@ fn survives_reading(file: &[u8], seeds: std::ops::Range<u64>, read: fn(&[u8], u6
     }
 }
 
-/// So many seeds in an ordinary run, …
+/// The number of seeds in an ordinary run.
 const SEEDS: u64 = 300;
-/// … and in a long one: `cargo test --release -p kestirim-import --test all -- --ignored harm --test-threads 1`.
+/// The number of seeds in a long run:
+/// `cargo test --release -p kestirim-import --test all -- --ignored harm --test-threads 1`.
 const MANY_SEEDS: u64 = 100_000;
 
-/// The most memory that this process had so far, bytes; nothing where the system does not tell.
+/// The peak memory of this process so far, bytes; `None` where the system does not tell.
 fn peak() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmPeak"))?;
@@ -106,7 +108,8 @@ fn peak() -> Option<u64> {
     Some(kibibytes * 1024)
 }
 
-/// Damages a file by many seeds, which must not take more than twenty times its size beside what the process has anyway.
+/// Damages a file with many seeds, which must not take more than twenty times its size in addition to what the process
+/// has anyway.
 fn survives_much(file: &[u8]) {
     survives(file, 0..1);
     let before = peak();
@@ -122,7 +125,7 @@ fn survives_much(file: &[u8]) {
     }
 }
 
-/// A shorter walk, to be damaged.
+/// A shorter walk for the damage tests.
 fn short() -> Vec<[f64; 7]> {
     walk::rows(2)
 }

@@ -12,7 +12,7 @@ use crate::walk;
 const HEADER: &str = "\nInertial data.\n\n\
     Header:      a_x [g]:      a_y [g]:      a_z [g]: ar_x [rad/s]: ar_y [rad/s]: ar_z [rad/s]:      Counter: Checksum:     \
     Nr:   Filtered ts[s]: Unfiltered ts[s]:      Pred. ts[s]: Freq. [Hz]:      m_x [G]:      m_y [G]:      m_z [G]:\n";
-/// A second of the counter.
+/// Ticks of the counter in one second.
 const COUNTER: f64 = 19_660_800.0;
 
 /// A text of the first prototype, whose magnetometer is missing now and then.
@@ -49,21 +49,21 @@ fn counted(rows: &[[f64; 7]]) -> String {
     text
 }
 
-/// The counts that a sensor of the module makes of a row.
+/// The counts that a sensor of the module gives for a row.
 fn counts([_, ax, ay, az, gx, gy, gz]: [f64; 7]) -> [i16; 6] {
     let [ax, ay, az] = [ax, ay, az].map(|force| force / STANDARD_GRAVITY * 2048.0);
     let [gx, gy, gz] = [gx, gy, gz].map(|rate| rate.to_degrees() * 16.4);
     [ax, ay, az, gx, gy, gz].map(|value| value.round() as i16)
 }
 
-/// The row that counts stand for.
+/// The row that counts represent.
 fn of_counts(t: f64, [ax, ay, az, gx, gy, gz]: [i16; 6]) -> [f64; 7] {
     let [ax, ay, az] = [ax, ay, az].map(|count| f64::from(count) / 2048.0 * STANDARD_GRAVITY);
     let [gx, gy, gz] = [gx, gy, gz].map(|count| (f64::from(count) / 16.4).to_radians());
     [t, ax, ay, az, gx, gy, gz]
 }
 
-/// A packet of four sensors, of which the last two are turned.
+/// A packet of four sensors, the last two of which are rotated.
 fn packet(number: usize, row: [f64; 7]) -> Vec<u8> {
     let stamp = (row[0] * 64e6).round() as u64 + 4_000_000_000;
     let [ax, ay, az, gx, gy, gz] = counts(row);
@@ -81,7 +81,7 @@ fn packet(number: usize, row: [f64; 7]) -> Vec<u8> {
     packet
 }
 
-/// Packets, the first of which counts so.
+/// One packet for each row, numbered from `first`.
 fn packets(rows: &[[f64; 7]], first: usize) -> Vec<Vec<u8>> {
     rows.iter().enumerate().map(|(i, &row)| packet(first + i, row)).collect()
 }
@@ -116,7 +116,7 @@ fn a_text_without_times_asks_for_the_rate() {
 
 #[test]
 fn packets_are_the_walk() {
-    // The clock wraps, and so does the counter of packets.
+    // Both the clock and the packet counter wrap.
     let rows = walk::rows(super::STRIDES);
     let bytes = packets(&rows, 65_000).concat();
     let log = read(&bytes).unwrap();

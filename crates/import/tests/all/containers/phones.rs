@@ -1,4 +1,4 @@
-//! What telephones export.
+//! Files that telephones export.
 
 use std::io::{Cursor, Write};
 
@@ -137,7 +137,7 @@ fn sensor_logger_of_ios_is_the_walk() {
     let raw = ("AccelerometerUncalibrated.csv", logger(&rows, 1, -1.0 / STANDARD_GRAVITY));
     let log = read(&zip(&[raw.clone(), gyroscope.clone(), metadata("ios", false)])).unwrap();
     assert_same(&log, &plain(&rows), 1e-12);
-    // Without what tells the unit an option does.
+    // Without metadata that tell the unit an option does.
     let unknown = zip(&[raw, gyroscope]);
     assert!(
         refusal(&unknown).contains("expected Metadata.csv, which tells the unit"),
@@ -173,7 +173,7 @@ fn sensors_that_begin_and_end_apart_are_interpolated() {
         ),
     ]))
     .unwrap();
-    // 11 at the beginning, 5 at the end, and those of a gap of 0.2 s.
+    // 11 at the beginning, 5 at the end, and the rest in a gap of 0.2 s.
     assert!(told(&log).contains("the times of the angular rate, 37 of which"), "{}", told(&log));
     for sample in &log.samples {
         let t = sample.time_us as f64 * 1e-6;

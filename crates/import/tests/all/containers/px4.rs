@@ -13,7 +13,7 @@ const IMU: &str = "vehicle_imu:uint64_t timestamp;uint64_t timestamp_sample;uint
     float[3] delta_angle;float[3] delta_velocity;uint16_t delta_angle_dt;uint16_t delta_velocity_dt;";
 const GYRO: &str = "sensor_gyro:uint64_t timestamp;uint64_t timestamp_sample;uint32_t device_id;float x;float y;float z;";
 const ACCEL: &str = "sensor_accel:uint64_t timestamp;uint64_t timestamp_sample;uint32_t device_id;float x;float y;float z;";
-/// A type in a type, as `esc_status` is.
+/// A type that contains another type, as in `esc_status`.
 const OTHER: &str = "esc_status:uint64_t timestamp;esc_report[2] esc;";
 const NESTED: &str =
     "esc_report:uint64_t timestamp;int32_t rpm;uint8_t state;uint8_t[3] _padding0;";
@@ -53,7 +53,7 @@ fn combined(id: u16, [t, ax, ay, az, gx, gy, gz]: [f64; 7]) -> Vec<u8> {
     data(id, &[&micros(t), &rate, &[0; 4], &[9, 0, 0, 0], &force, &[0; 4], &[0]])
 }
 
-/// A log with `sensor_combined`, another topic, a text, a dropout, a mark and a record of a kind that is not known.
+/// A log with `sensor_combined`, another topic, a text, a dropout, a mark and a record of an unknown kind.
 fn log(rows: &[[f64; 7]]) -> Vec<u8> {
     let mut log = header(&[OTHER, NESTED, COMBINED]);
     log.extend(topic(0, 0, "esc_status"));
@@ -121,7 +121,7 @@ fn two_topics_become_one() {
         |id, t: f64, values| data(id, &[&micros(t + 0.002), &micros(t), &[0; 4], &singles(values)]);
     for (i, &[t, ax, ay, az, gx, gy, gz]) in rows.iter().enumerate() {
         log.extend(sample(0, t, [gx, gy, gz]));
-        // The accelerometer begins later, and lacks samples that lie on a line anyway.
+        // The accelerometer begins later, and only lacks samples that interpolation restores.
         if i > 4 && (t > 1.0 || i % 2 == 0) {
             log.extend(sample(1, t, [ax, ay, az]));
         }
@@ -170,7 +170,7 @@ fn damage_is_skipped_and_counted() {
 fn what_was_appended_is_read_and_newer_logs_are_refused() {
     let rows = walk::rows(super::STRIDES);
     let mut bytes = log(&rows);
-    // The logger stopped in the middle of a record, and went on behind it.
+    // The logger stopped in the middle of a record and continued behind it.
     bytes.truncate(bytes.len() - 20);
     let offset = bytes.len() as u64;
     bytes.extend(combined(1, rows[rows.len() - 1].map(|value| value * 1.001)));

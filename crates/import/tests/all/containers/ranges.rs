@@ -1,4 +1,4 @@
-//! Ranges in bags of ROS 1 and MCAP files, by the definitions of the messages: the same as are written.
+//! Ranges in bags of ROS 1 and MCAP files, by the definitions of the messages: those read are those written.
 
 use kestirim_import::Options;
 use kestirim_import::ranging::{self, Ranging};
@@ -12,18 +12,18 @@ use super::{MANY_SEEDS, SEEDS, survives_reading};
 const RANGE: &str = "Header header\nuint8 ULTRASOUND=0\nuint8 INFRARED=1\nuint8 radiation_type\nfloat32 field_of_view\n\
     float32 min_range\nfloat32 max_range\nfloat32 range\n================================\nMSG: std_msgs/Header\n\
     uint32 seq\ntime stamp\nstring frame_id\n";
-/// Of `github.com/ntu-aris/uwb_driver`, shortened behind the range.
+/// The definition from `github.com/ntu-aris/uwb_driver`, shortened behind the range.
 const UWB_RANGE: &str = "Header  header      # ROS header\nuint16  msgId\nuint8   requester_id\nuint8   responder_id\n\
     int8    requester_idx\nint8    responder_idx\nuint8   range_status\nuint8   antenna\nuint16  stopwatch_time\n\
     float32 distance      # Distance measurement using ToF\nfloat32 coarse_range\nfloat32 distance_err\n\
     geometry_msgs/Point responder_location\n================================\nMSG: geometry_msgs/Point\n\
     float64 x\nfloat64 y\nfloat64 z\n";
-/// Of `github.com/nooploop-dev/nlink_parser`.
+/// The definitions from `github.com/nooploop-dev/nlink_parser`.
 const TAGFRAME0: &str = "uint8 role\nuint8 id\nuint32 local_time\nuint32 system_time\nfloat32 voltage\nfloat32[3] pos_3d\n\
     float32[3] eop_3d\nfloat32[3] vel_3d\nfloat32[8] dis_arr\n";
 const NODEFRAME2: &str = "std_msgs/Header header\nuint8 role\nuint8 id\nfloat32 voltage\nLinktrackNode2[] nodes\n\
     ================================\nMSG: nlink_parser/LinktrackNode2\nuint8 role\nuint8 id\nfloat32 dis\nfloat32 fp_rssi\nfloat32 rx_rssi\n";
-/// Of `github.com/GTEC-UDC/rosmsgs`.
+/// The definition from `github.com/GTEC-UDC/rosmsgs`.
 const RANGING: &str =
     "int16 anchorId\nint16 tagId\nint32 range\nint32 seq\nfloat64 errorEstimation\n";
 
@@ -76,15 +76,15 @@ impl Pen {
     }
 }
 
-/// A topic's number and a message on it.
+/// The index of a topic and a message on it.
 type OnTopic = (usize, Vec<u8>);
 
-/// A type with its definition, and a message of a time and ranges on a topic.
+/// A message type with its definition, its topics and a writer of its messages.
 struct Kind {
     name: &'static str,
     definition: &'static str,
     topic: fn(usize) -> String,
-    /// The messages of a moment, of ROS 1 or in CDR.
+    /// The messages of one epoch, for ROS 1 or in CDR.
     messages: fn(f64, [f64; 3], bool) -> Vec<OnTopic>,
     units: Option<&'static str>,
 }
@@ -180,7 +180,7 @@ fn moments() -> impl Iterator<Item = (f64, [f64; 3])> {
     })
 }
 
-/// A bag's connection with a definition.
+/// A connection record of a bag, with a definition.
 pub(super) fn connection(id: u32, topic: &str, kind: &str, definition: &str) -> Vec<u8> {
     let field = |name: &str, value: &[u8]| {
         let field = [name.as_bytes(), b"=", value].concat();
@@ -197,7 +197,7 @@ pub(super) fn connection(id: u32, topic: &str, kind: &str, definition: &str) -> 
     )
 }
 
-/// The moments as bags of ROS 1, plain and packed, and as MCAP of ROS 2.
+/// The epochs as bags of ROS 1, uncompressed and compressed, and as MCAP of ROS 2.
 fn files(kind: &Kind) -> [Vec<u8>; 3] {
     let topics = if (kind.topic)(0) == (kind.topic)(1) { 1 } else { 3 };
     let mut records = vec![connection(9, "/tf", "tf/tfMessage", "X x\n")];
@@ -298,7 +298,7 @@ fn what_is_open_is_refused() {
     assert_eq!(with(&records, &said("b")).unwrap().ranges.len(), 1);
     let error = with(&records, &said("/c")).unwrap_err();
     assert_eq!(error, "expected ranges on topic /c, found them on /a/uwb, /b/uwb (--topic)");
-    // Without a definition nobody knows where a range stands.
+    // Without a definition the position of a range is unknown.
     let records = [connection(0, "/uwb", "uwb_driver/UwbRange", ""), message(0, 0.0, &heard)];
     let error = with(&records, &plain).unwrap_err();
     assert!(
@@ -307,7 +307,7 @@ fn what_is_open_is_refused() {
     );
     let error = with(&[two("/uwb", 0)], &plain).unwrap_err();
     assert_eq!(error, "expected messages of ranges, found none on /uwb");
-    // A tag's own number is no anchor's.
+    // A tag's own number does not identify an anchor.
     let own = connection(0, "/uwb", "radio/Range", "uint8 id\nfloat32 range\n");
     assert!(
         with(&[own, message(0, 0.0, &[1, 0, 0, 0, 0])], &plain)
@@ -320,7 +320,7 @@ fn what_is_open_is_refused() {
     let records = [range("/uwb/0", 0), range("/uwb/1", 1), sent(0, "A1"), sent(1, "A2")];
     let error = with(&records, &plain).unwrap_err();
     assert!(error.starts_with("expected anchors by the names of topics or of frames"), "{error}");
-    // Ranges of a sonar.
+    // The ranges of a sonar.
     let error = with(&[range("/sonar", 0), sent(0, "base_link")], &plain).unwrap_err();
     assert!(error.starts_with("expected ranges to anchors \"A0\""), "{error}");
     let time = Options { units: "t=ms".parse().unwrap(), ..Options::default() };
@@ -343,7 +343,7 @@ fn damage_is_skipped_and_counted() {
     assert!(read(&plain, &options(None)).unwrap_err().contains("damaged records"));
 }
 
-/// What is refused is so in one sentence.
+/// Fails unless refusals are one sentence.
 fn assert_harmless(file: &[u8], seed: u64) {
     let anchors = ["A0", "A1", "A2"].map(str::to_owned);
     let options = Options { units: "range=mm".parse().unwrap(), ..Options::default() };

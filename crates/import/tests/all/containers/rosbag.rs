@@ -40,7 +40,7 @@ pub(super) fn message(id: u32, t: f64, data: &[u8]) -> Vec<u8> {
     record(&[("op", &[2]), ("conn", &id.to_le_bytes()), ("time", &time)], data)
 }
 
-/// Records in chunks of so many messages, packed, with the index that a player wants.
+/// A bag of these records in compressed chunks of a few messages, with the index that a player needs.
 pub(super) fn bag(records: &[Vec<u8>], name: &str, pack: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
     let mut bag = b"#ROSBAG V2.0\n".to_vec();
     let header = [
@@ -70,7 +70,7 @@ pub(super) fn bag(records: &[Vec<u8>], name: &str, pack: impl Fn(&[u8]) -> Vec<u
     bag
 }
 
-/// The walk on one topic, beside another one.
+/// The walk on one topic, beside another topic.
 fn records(rows: &[[f64; 7]]) -> Vec<Vec<u8>> {
     let mut records =
         vec![connection(0, "/imu/data", "sensor_msgs/Imu"), connection(1, "/tf", "tf/tfMessage")];
@@ -147,7 +147,7 @@ fn what_is_not_there_is_named() {
         "expected messages of sensor_msgs/Imu, found none on /imu"
     );
     assert_eq!(refusal(b"#ROSBAG V1.2\nrest"), "expected #ROSBAG V2.0, found \"#ROSBAG V1.2\"");
-    // An accelerometer that says it has no values.
+    // An accelerometer that declares to have no values.
     let mut bare = vec![connection(0, "/imu", "sensor_msgs/Imu")];
     for &row in &short() {
         let mut imu = ros1(0, stamp(row[0]), row);
@@ -213,7 +213,7 @@ fn much_harm() {
     }
 }
 
-/// A tenth of the seeds, as bz2 is slow.
+/// Uses a tenth of the seeds, as bz2 is slow.
 #[test]
 #[ignore = "minutes"]
 fn much_harm_to_bz2() {

@@ -1,4 +1,4 @@
-//! Sensors that are known to be wrong, and noise.
+//! Sensors with known errors, and noise.
 
 #![allow(dead_code)] // Each test needs a part of it.
 
@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Rotation3, SVector, UnitVector3, Vector3};
 
 pub(crate) const GRAVITY: f64 = 9.80665;
 
-/// Normal noise, the same in every run: a sum of twelve numbers of Vigna's splitmix64.
+/// Reproducible normal noise: a sum of twelve numbers of Vigna's splitmix64.
 pub(crate) struct Noise(pub(crate) u64);
 
 impl Noise {
@@ -36,7 +36,7 @@ pub(crate) fn cast<T: Scalar>(v: &Vector3<f64>) -> SVector<T, 3> {
     v.map(T::from_f64)
 }
 
-/// What a sensor shows whose correction is the triad.
+/// The reading of a sensor whose correction is the triad.
 pub(crate) fn measured(triad: &Triad<f64>, truth: &Vector3<f64>) -> Vector3<f64> {
     triad.matrix.try_inverse().expect("a sensor") * truth + triad.offset
 }
@@ -51,7 +51,7 @@ pub(crate) fn gyroscope() -> Triad<f64> {
     Triad { offset: Vector3::new(0.017, -0.02, 0.01), matrix }
 }
 
-/// The attitudes (sensor → earth) of six sides, and of edges and corners between them.
+/// The attitudes (sensor → earth) of the six sides, and of edges and corners between them.
 pub(crate) fn attitudes(count: usize) -> Vec<Rotation3<f64>> {
     let ups = [
         [1.0, 0.0, 0.0],
@@ -75,7 +75,7 @@ pub(crate) fn attitudes(count: usize) -> Vec<Rotation3<f64>> {
     ups.into_iter().cycle().take(count).map(of).collect()
 }
 
-/// Poses in these attitudes, each from 200 noisy samples whose mean is off by `pose_noise` besides.
+/// Poses in these attitudes, each from 200 noisy samples whose mean is additionally off by `pose_noise`.
 pub(crate) fn poses<T: Scalar>(
     attitudes: &[Rotation3<f64>],
     noise: &mut Noise,
@@ -96,7 +96,7 @@ pub(crate) fn poses<T: Scalar>(
     poses
 }
 
-/// The turns from each attitude to the next, in so many passes.
+/// The turns from each attitude to the next, integrated in several passes.
 pub(crate) fn gyroscope_of<T: Scalar>(
     attitudes: &[Rotation3<f64>],
     accelerometer: &Triad<T>,
@@ -112,7 +112,7 @@ pub(crate) fn gyroscope_of<T: Scalar>(
         gyroscope_fit = Gyroscope::new(triad).unwrap();
         for pair in attitudes.windows(2) {
             let between = pair[0].rotation_to(&pair[1]);
-            // In the sensor's frame at the beginning: the axis stays the same throughout.
+            // In the sensor's frame at the beginning, where the axis stays the same throughout.
             let whole = (pair[0].inverse() * between * pair[0]).scaled_axis();
             let mut turn = Turn::new(triad).unwrap();
             for _ in 0..STEPS {

@@ -1,4 +1,4 @@
-//! A plant without a pattern, and an observer of it.
+//! A plant without special structure, and an observer of it.
 
 use kestirim_luenberger::{Plant, PredictorGains};
 use nalgebra::{Matrix2x3, Matrix3, Matrix3x2, Vector3};

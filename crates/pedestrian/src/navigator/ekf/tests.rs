@@ -1,4 +1,4 @@
-//! The filter beside matrices and closed forms.
+//! Comparison of the filter with matrices and closed forms.
 
 use super::*;
 use crate::alignment::STANDARD_GRAVITY;
@@ -8,7 +8,7 @@ fn standing() -> Ekf<f64> {
     Ekf::start(SensorClass::Industrial, Orientation::identity())
 }
 
-/// A step of a foot at rest but for this acceleration (m/s², body).
+/// A step of a foot at rest except for an acceleration (m/s², body).
 fn step(interval: f64, acceleration: Vector3<f64>) -> Step<f64> {
     let force_g = acceleration / STANDARD_GRAVITY + Vector3::z();
     Step { interval, force_g, angular_rate: Vector3::zeros(), turn: Vector3::zeros() }
@@ -31,7 +31,7 @@ fn a_tilt_turns_what_the_force_has_pushed() {
     ekf.error.covariance = Covariance::from_lower_triangle(&(before * 1000.0));
     let pushed = Vector3::new(0.3, -0.5, 0.8);
     ekf.propagate_covariance(&pushed, 0.01);
-    // δv ← δv + θ × u, and 5 mrad a root of a second.
+    // δv ← δv + θ × u, and 5 mrad/√s.
     let mut f = SMatrix::<f64, 6, 6>::identity();
     for axis in 0..3 {
         let mut tilt = Vector3::zeros();
@@ -76,7 +76,7 @@ fn half_of_a_velocity_error_times_the_swing_is_taken_back() {
     let taken_back = ekf.velocity() - drifted;
     assert!(ekf.velocity().norm() < 0.01, "{}", ekf.velocity());
     assert!((ekf.position() - before - taken_back * 0.3).norm() < 1e-12);
-    // A second one right after it has nothing to take back.
+    // A second one right after it has nothing to correct.
     let there = ekf.position();
     ekf.zero_velocity(&stance(Vector3::zeros()));
     assert_eq!(ekf.position(), there);
@@ -85,17 +85,17 @@ fn half_of_a_velocity_error_times_the_swing_is_taken_back() {
 #[test]
 fn a_drift_forwards_was_a_tilt_forwards() {
     let mut ekf = standing();
-    // Level by its own estimate; the force shows that it leans by a hundredth.
+    // The foot is level by its own estimate; the force shows that it is tilted by a hundredth.
     for _ in 0..60 {
         ekf.propagate(&step(0.01, Vector3::new(0.098, 0.0, 0.0)), false);
     }
     ekf.zero_velocity(&stance(Vector3::zeros()));
     let up = ekf.orientation().to_earth(&Vector3::new(0.01, 0.0, 1.0));
-    // Nearer to upwards than before, when it was 0.01.
+    // Nearer to the vertical than before, when it was 0.01.
     assert!((0.0..0.009).contains(&up.x) && up.y.abs() < 1e-6, "{up}");
 }
 
-/// Variance of the first velocity after a swing of so many seconds and a stance.
+/// The variance of the first velocity component after a swing of `seconds` and a stance.
 fn known(seconds: f64, zero: ZeroVelocity<f64>) -> f64 {
     let mut ekf = standing();
     ekf.error.covariance = Covariance::zero();
@@ -106,7 +106,7 @@ fn known(seconds: f64, zero: ZeroVelocity<f64>) -> f64 {
 
 #[test]
 fn a_zero_velocity_is_worth_two_centimetres_a_second() {
-    // Of a velocity that has wandered by 0.3 m/s a root of a second, and a measurement of R, P R/(P + R) is left.
+    // After a random walk of 0.3 m/s/√s, and a measurement of variance R, P R/(P + R) is left.
     let left = |seconds: f64, r: f64| {
         let p = 0.3 * 0.3 * seconds;
         p * r / (p + r)
@@ -115,7 +115,8 @@ fn a_zero_velocity_is_worth_two_centimetres_a_second() {
     let is_near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 1e-6;
     assert!(is_near(known(0.5, zero), left(0.5, 4e-4)));
     assert!(is_near(known(0.001, zero), left(0.001, 4e-4)));
-    // Twice as often each says half as much; a foot in doubt says half as much; no interval is below a millisecond.
+    // At twice the rate each has half the weight; a foot in doubt has half the weight; no interval counts as less than
+    // a millisecond.
     assert!(is_near(known(0.5, ZeroVelocity { interval: 0.0025, ..zero }), left(0.5, 8e-4)));
     assert!(is_near(known(0.5, ZeroVelocity { statistic: 0.3, ..zero }), left(0.5, 8e-4)));
     assert!(is_near(known(0.5, ZeroVelocity { interval: 1e-9, ..zero }), left(0.5, 2e-3)));
@@ -144,7 +145,7 @@ fn a_turn_that_was_missed_turns_what_was_pushed_since_and_is_in_doubt() {
     assert!((ekf.velocity() - velocity).norm() < 1e-12, "{}", ekf.velocity());
     let (found, expected) = (ekf.orientation, before.turned_in_earth(&turn));
     assert!((found.to_earth(&Vector3::x()) - expected.to_earth(&Vector3::x())).norm() < 1e-12);
-    // Half of all of it, of the heading half of that.
+    // Half of the turn and all its consequences, and half of that for the heading.
     let doubtful = [velocity.x, velocity.y, velocity.z, turn.x, turn.y, 0.5 * turn.z];
     let doubtful = SVector::<f64, 6>::from(doubtful) * 0.5;
     let p = doubtful * doubtful.transpose();

@@ -1,4 +1,4 @@
-//! What is taken back when a stride ends.
+//! Tests of the drift that is removed at the end of a stride.
 
 use super::*;
 use nalgebra::Vector3;
@@ -7,7 +7,7 @@ fn standing() -> Lite<f64> {
     Lite::start(SensorClass::Industrial, Orientation::identity())
 }
 
-/// A step of a foot at rest but for this acceleration (m/s²).
+/// A step of a foot at rest except for an acceleration (m/s²).
 fn step(interval: f64, acceleration: Vector3<f64>) -> Step<f64> {
     let force_g = acceleration / STANDARD_GRAVITY + Vector3::z();
     Step { interval, force_g, angular_rate: Vector3::zeros(), turn: Vector3::zeros() }
@@ -17,7 +17,7 @@ fn stance(landing: bool) -> ZeroVelocity<f64> {
     ZeroVelocity { velocity: Vector3::zeros(), statistic: 0.0, interval: 0.01, landing }
 }
 
-/// After a swing of so many hundredths of a second with this acceleration.
+/// The navigator after a swing of `steps` hundredths of a second with an acceleration.
 fn swung(steps: u32, acceleration: Vector3<f64>) -> Lite<f64> {
     let mut lite = standing();
     (0..steps).for_each(|_| lite.propagate(&step(0.01, acceleration), false));
@@ -42,13 +42,13 @@ fn half_of_the_tilt_that_explains_a_drift_is_put_right() {
         let acceleration = Vector3::new(acceleration, 0.5 * acceleration, 0.0);
         let mut lite = swung(60, acceleration);
         lite.zero_velocity(&stance(landing));
-        // The force that was taken for an acceleration points upwards.
+        // The force that was mistaken for an acceleration points upwards.
         let force = acceleration / STANDARD_GRAVITY + Vector3::z();
         let left = lite.orientation().to_earth(&force);
         let expected = acceleration / STANDARD_GRAVITY * (1.0 - share);
         assert!((left.x - expected.x).hypot(left.y - expected.y) < 1e-4, "{left} {expected}");
     }
-    // What drifted within less than a third of a second counts as if it had taken as long.
+    // A drift within less than 0.3 s counts as if it had taken that long.
     let acceleration = Vector3::new(0.3, 0.0, 0.0);
     let mut lite = swung(15, acceleration);
     lite.zero_velocity(&stance(true));

@@ -9,20 +9,20 @@ const GRAVITY: f64 = 9.80665;
 const STAND: f64 = 0.5;
 const SWING: f64 = 0.6;
 
-/// What the walker does and what the sensor adds.
+/// The walker's motion and the sensor's errors.
 #[derive(Clone)]
 pub(crate) struct Foot {
-    /// Strides of this length (m).
+    /// The length of a stride (m).
     pub(crate) stride: f64,
     /// The heading of each stride (rad).
     pub(crate) headings: Vec<f64>,
-    /// How far the foot pitches in a swing (rad).
+    /// The pitch of the foot in a swing (rad).
     pub(crate) pitch: f64,
-    /// Sampling rate (Hz).
+    /// The sampling rate (Hz).
     pub(crate) rate: f64,
-    /// Gyro bias (rad/s, body).
+    /// The gyro bias (rad/s, body).
     pub(crate) bias: Vector3<f64>,
-    /// Peak of a deterministic noise: m/s², and a tenth of it in rad/s.
+    /// The peak of a deterministic noise: in m/s², and a tenth of it in rad/s.
     pub(crate) noise: f64,
 }
 
@@ -40,12 +40,12 @@ impl Default for Foot {
 }
 
 impl Foot {
-    /// Stands for 2 s, walks, stands for 1 s.
+    /// The duration of the walk (s): 2 s of standing, the strides, 1 s of standing.
     pub(crate) fn duration(&self) -> f64 {
         3.0 + self.headings.len() as f64 * (STAND + SWING)
     }
 
-    /// Position (m) and rotation vector (rad) at a time, earth.
+    /// The position (m) and rotation vector (rad) at a time, earth.
     fn pose(&self, t: f64) -> (Vector3<f64>, f64, f64) {
         let mut position = Vector3::zeros();
         let mut heading = self.headings.first().copied().unwrap_or(0.0);
@@ -73,7 +73,7 @@ impl Foot {
             .turned_in_earth(&Vector3::new(0.0, 0.0, heading))
     }
 
-    /// What the IMU measures, exact but for the noise asked for.
+    /// The samples that the IMU measures, exact except for the configured noise.
     pub(crate) fn samples<T: Scalar>(&self) -> Vec<ImuSample<T>> {
         let steps = (self.duration() * self.rate) as u64;
         (1..=steps).map(|k| self.sample(k)).collect()

@@ -7,7 +7,7 @@ use kestirim_ppp_filter::SatelliteObservation;
 use nalgebra::Vector3;
 
 pub(crate) const START: GpsTime = GpsTime::new_in_day(59_025, 30_000.0);
-/// Where the marker is, ECEF, m.
+/// The position of the marker, ECEF, m.
 pub(crate) const MARKER: [f64; 3] = [3_582_104.8, 532_590.2, 5_232_755.1];
 const RADIUS: f64 = 26_560e3;
 const MEAN_MOTION: f64 = 1.4585e-4;
@@ -17,7 +17,7 @@ pub(crate) fn marker() -> Vector3<f64> {
     Vector3::from(MARKER)
 }
 
-/// A satellite `seconds` after the start, ECEF.
+/// The state of a satellite `seconds` after the start, ECEF.
 fn state(prn: u8, seconds: f64) -> SatelliteState {
     let (node, phase) = (f64::from(prn % 6) * 1.047, f64::from(prn) * 2.4);
     let (sine, cosine) = (phase + MEAN_MOTION * seconds).sin_cos();
@@ -38,7 +38,7 @@ fn state(prn: u8, seconds: f64) -> SatelliteState {
     }
 }
 
-/// What a receiver at `place` observes `seconds` after the start, above five degrees.
+/// The observations of a receiver at `place`, `seconds` after the start, above five degrees.
 pub(crate) fn observe(seconds: f64, place: &Vector3<f64>) -> Vec<SatelliteObservation<'static>> {
     let site = Site::new(&Receiver::default(), place, START.plus(seconds));
     let carriers = Carriers::L1L2;
@@ -63,7 +63,7 @@ pub(crate) fn observe(seconds: f64, place: &Vector3<f64>) -> Vec<SatelliteObserv
     (1..=32).filter_map(sight).collect()
 }
 
-/// Adds to a satellite's codes and phases, m.
+/// Adds errors to a satellite's codes and phases, m.
 pub(crate) fn spoil(
     observations: &mut [SatelliteObservation<'_>],
     satellite: u8,

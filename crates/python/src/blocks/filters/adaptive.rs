@@ -9,7 +9,7 @@ use super::{Answer, AnyFilter, MOST, Row, expected};
 use crate::blocks::sleep::{loaded, stored};
 use crate::error::refused;
 
-/// Learns Q and R.
+/// A filter that estimates Q and R.
 pub(super) struct Adaptive<const N: usize> {
     pub(super) f: SMatrix<f64, N, N>,
     pub(super) filter: AdaptiveKalman<f64, N, MOST>,
@@ -17,7 +17,7 @@ pub(super) struct Adaptive<const N: usize> {
 
 impl<const N: usize> AnyFilter for Adaptive<N> {
     fn predict(&mut self) -> PyResult<()> {
-        // The filter brings the noise that it has learnt.
+        // The filter adds the noise that it has estimated.
         let none = Covariance::zero();
         self.filter.predict(&Linear { f: &self.f, q: &none }).map_err(refused)
     }

@@ -9,7 +9,7 @@ use crate::blocks::matrix;
 use crate::blocks::sleep::{loaded, stored};
 use crate::error::refused;
 
-/// Each measurement by itself, or all at once if their noises are correlated.
+/// A filter that processes each measurement separately, or all at once if their noises are correlated.
 pub(super) struct Plain<const N: usize> {
     pub(super) model: Model<N>,
     pub(super) estimate: Gaussian<f64, N>,
@@ -46,7 +46,7 @@ impl<const N: usize> AnyFilter for Plain<N> {
                 if innovation.is_nan() {
                     continue;
                 }
-                // The innovations are those of the prediction.
+                // The innovations refer to the prediction.
                 let moved = self.estimate.mean - before.mean;
                 let left = innovation - expected(row, moved.as_slice());
                 let report = self.estimate.weigh_entries(row, left, self.r[index * (count + 1)]);

@@ -8,7 +8,7 @@ use super::{Answer, AnyFilter, MOST, Model, Row};
 use crate::blocks::sleep::{loaded, stored};
 use crate::error::refused;
 
-/// Weighs measurements by their residuals.
+/// A filter that weights measurements by their residuals.
 pub(super) struct Outliers<const N: usize> {
     pub(super) model: Model<N>,
     pub(super) estimate: Gaussian<f64, N>,

@@ -1,4 +1,4 @@
-//! Samples that were not measured: those of before again, and rates of exactly zero, once or for a while.
+//! Samples that were not measured: repetitions of earlier ones, and rates of exactly zero, once or for a while.
 
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -8,17 +8,18 @@ use kestirim_health::Reason;
 use super::super::Sample;
 use crate::Finding;
 
-/// A sensor that repeats itself bit for bit for so long is stuck, s.
+/// The time for which a stuck sensor repeats itself bit for bit, s.
 const STUCK_S: f64 = 0.25;
-/// So many samples in a row that were there before, bit for bit, are no chance.
+/// The number of samples in a row that equal earlier ones bit for bit, from which on it is not chance.
 const REPEATED: usize = 20;
-/// A rate of exactly zero between two of the same sign that are beyond this is none, rad/s; …
+/// The rate in the samples before and after, of the same sign, beyond which a rate of exactly zero was not measured,
+/// rad/s.
 const TURNING: f64 = 0.5;
-/// … so many of them, and of so many samples one, are told.
+/// The fewest such zeros that are reported; they must also be more than one in `ONE_IN` samples.
 const ZEROS: usize = 3;
 const ONE_IN: usize = 1000;
 
-/// Whether all that was measured is the same.
+/// Whether all measurements of two samples are the same.
 pub(super) fn same(a: &Sample, b: &Sample) -> bool {
     a.specific_force == b.specific_force && a.angular_rate == b.angular_rate
 }
@@ -52,7 +53,7 @@ pub(super) fn stuck(samples: &[Sample]) -> Option<Finding> {
     })
 }
 
-/// The longest block of samples that comes again later: of a buffer that is written twice.
+/// The longest block of samples that is repeated later: a buffer that was written twice.
 pub(super) fn block(samples: &[Sample]) -> Option<Finding> {
     let mut seen: HashMap<u64, usize> = HashMap::new();
     let (mut count, mut at) = (0, None);
@@ -64,7 +65,7 @@ pub(super) fn block(samples: &[Sample]) -> Option<Finding> {
             value.to_bits().hash(&mut hasher);
         }
         let before = seen.insert(hasher.finish(), i);
-        // What stays the same is stuck, and told so.
+        // Constant samples are reported as stuck instead.
         let before = before.filter(|before| before + 1 < i);
         let goes_on = before.is_some() && before == at.map(|at: usize| at + 1);
         count = if goes_on { count + 1 } else { usize::from(before.is_some()) };
@@ -75,7 +76,8 @@ pub(super) fn block(samples: &[Sample]) -> Option<Finding> {
     }
     let (count, before, now) = longest;
     let seconds = |i: usize| (samples[i].time_us - samples[0].time_us) as f64 * 1e-6;
-    // Rows that a recorder wrote twice have the times of before, and steps without noise are the same from the first to the last.
+    // Rows that a recorder wrote twice have the earlier times, and steps without noise are the same from the first to
+    // the last.
     let is_later = samples[now].time_us > samples[before].time_us && count <= now - before;
     (count >= REPEATED && is_later).then(|| {
         Finding::fault(
@@ -112,7 +114,7 @@ pub(super) fn zeros(samples: &[Sample]) -> Option<Finding> {
     })
 }
 
-/// An axis of the gyroscope that says exactly zero for a while in which the foot turns about another, and does not otherwise.
+/// An axis of the gyroscope that is exactly zero for a while in which the foot turns about another, and not otherwise.
 pub(super) fn silent(samples: &[Sample]) -> Option<Finding> {
     let of_axis = |axis: usize| {
         let is_zero = |sample: &Sample| sample.angular_rate[axis] == 0.0;

@@ -6,21 +6,23 @@ use super::super::Sample;
 use crate::Finding;
 use crate::metrics::median;
 
-/// What is looked at at a time, s.
+/// The length of the parts that are examined, s.
 const PART_S: f64 = 0.5;
-/// Nothing there is farther from its mean than this: m/s², and five times rad/s.
+/// The largest deviation from the mean in a part at rest: in m/s² for the force, and a fifth of that in rad/s for the
+/// rate.
 const STILL: f64 = 0.6;
-/// A standstill of so many parts shows a gyroscope's zero, if that is no faster than this, °/s: a lift or a bus may turn.
+/// The fewest parts of a standstill that shows a gyroscope's zero, if that is no faster than `FASTEST`, °/s: a lift or
+/// a bus may turn.
 const PARTS: usize = 3;
 const FASTEST: f64 = 5.0;
-/// A zero has moved if it is farther from another than this and three times what its own parts differ by, °/s.
+/// The distance between two zeros above which the zero has moved, beyond three times the differences within each, °/s.
 const MOVED: f64 = 0.5;
 
 /// A part in which the foot stands.
 struct Part {
-    /// Which of the log's parts.
+    /// The index among the log's parts.
     index: usize,
-    /// Size of the specific force, m/s².
+    /// Magnitude of the specific force, m/s².
     gravity: f64,
     /// Angular rate, °/s.
     rate: [f64; 3],
@@ -28,15 +30,15 @@ struct Part {
 
 /// The zero of a gyroscope, as a standstill shows it.
 struct Zero {
-    /// When, s.
+    /// The time, s.
     t: f64,
     /// Angular rate, °/s.
     rate: [f64; 3],
-    /// By how much its parts usually differ, °/s.
+    /// The usual difference between its parts, °/s.
     apart: [f64; 3],
 }
 
-/// What standstills show of a log that has a sample each `usual` seconds.
+/// The findings from standstills in a log with one sample every `usual` seconds.
 pub(super) fn check(samples: &[Sample], usual: f64) -> Vec<Finding> {
     let length = ((PART_S / usual).round() as usize).max(5);
     let still: Vec<Part> = samples
@@ -73,7 +75,7 @@ pub(super) fn check(samples: &[Sample], usual: f64) -> Vec<Finding> {
 }
 
 impl Part {
-    /// What stands still.
+    /// The part, if the foot stands still in it.
     fn of(index: usize, part: &[Sample]) -> Option<Self> {
         let mean = |of: fn(&Sample) -> [f64; 3]| -> [f64; 3] {
             std::array::from_fn(|i| {
@@ -92,7 +94,7 @@ impl Part {
     }
 }
 
-/// Median of each axis, of something about the rate.
+/// The median over parts, for each axis, of a function of the rate.
 fn middle(parts: &[Part], of: impl Fn([f64; 3]) -> [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| median(&parts.iter().map(|part| of(part.rate)[i]).collect::<Vec<_>>()))
 }
@@ -126,7 +128,8 @@ fn moved(zeros: &[Zero]) -> Option<Finding> {
 mod tests {
     use super::*;
 
-    /// Whether a zero is told to move that does so at once, by so many °/s, while the foot walks between two standstills of 2 s.
+    /// Whether a change of the zero is reported that occurs at once, by `by` °/s, while the foot walks between two
+    /// standstills of 2 s.
     fn told(by: f64) -> bool {
         let sample = |k: u32| {
             let t = f64::from(k) * 0.01;

@@ -1,20 +1,23 @@
-//! Single samples that stand alone: a wrong bit of a bus, a supply that breaks in.
+//! Single outlying samples: a wrong bit on a bus, a supply that breaks down.
 
 use kestirim_health::Reason;
 
 use super::super::Sample;
 use crate::Finding;
 
-/// A sample stands alone if an axis is farther than this from the mean of so many before and after it: rad/s, m/s², …
+/// The distance of an axis from its mean over the `BESIDE` samples before and after, beyond which a sample is an
+/// outlier: rad/s, m/s².
 const FAR: [f64; 2] = [0.5, 4.0];
 const BESIDE: usize = 3;
-/// … of which no axis varies by more than this part of it. What a foot does, it does for longer: in 31 recordings none does.
+/// The largest variation of any axis in the samples before and after, relative to that distance. What a foot does lasts
+/// longer: in 31 recordings none does it.
 const CALM: f64 = 0.3;
-/// So many, and of so many samples one, are told: as many again, and more, are where the foot moves.
+/// The fewest outliers that are reported; they must also be at least one in `ONE_IN` samples. As many again, and more,
+/// are where the foot moves.
 const FEWEST: usize = 3;
 const ONE_IN: usize = 5000;
 
-/// Of the sensor that has more of them.
+/// Reports the outliers of the sensor that has more of them.
 pub(super) fn find(samples: &[Sample]) -> Option<Finding> {
     let rate = ("gyroscope", alone(samples, FAR[0], |it| it.angular_rate));
     let force = ("accelerometer", alone(samples, FAR[1], |it| it.specific_force));
@@ -53,7 +56,7 @@ fn alone(samples: &[Sample], far: f64, of: fn(&Sample) -> [f64; 3]) -> usize {
 mod tests {
     use super::*;
 
-    /// Whether spikes of that height (rad/s), one in 200, are told.
+    /// Whether spikes of that height (rad/s), one in 200, are reported.
     fn told(height: f64) -> bool {
         let sample = |k: u32| {
             let t = f64::from(k) * 0.01;

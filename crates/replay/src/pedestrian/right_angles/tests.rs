@@ -7,7 +7,8 @@ use rand_xoshiro::rand_core::SeedableRng;
 /// A drift of two standard deviations of the class, rad/s.
 const DRIFT: f64 = 0.004;
 
-/// Legs of so many strides in these directions, degrees; a stride a second, 1.2 m long, on a heading that drifts.
+/// A walk of legs with these numbers of strides and directions, degrees; one stride per second, 1.2 m long, with a
+/// drifting heading.
 fn walk(legs: &[(u32, f64)], drift: f64) -> Walk {
     let mut walk = Walk { sensor: SensorClass::Consumer, ..Walk::default() };
     walk.track.push(TrackPoint { time_us: 0, position: [0.0; 3] });
@@ -43,7 +44,7 @@ fn off(walk: &Walk, truth: &Walk) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Corridors, once around and half way again, and a hall that is crossed.
+/// Corridors, once around and half way again, with a hall that is crossed.
 const BUILDING: [(u32, f64); 7] =
     [(12, 20.0), (9, 110.0), (4, 155.0), (12, 200.0), (9, 290.0), (12, 20.0), (9, 110.0)];
 
@@ -71,7 +72,7 @@ fn a_round_that_is_closed_too_keeps_what_the_walls_showed() {
     let rate = found.heading_rate.expect("a rate");
     assert!((rate - shown).abs() < 2.0 * angles.rate_sigma, "{rate} after {shown}");
     assert!(found.closure_m < 0.1 && off(&found, &truth) < 0.5, "{} m", off(&found, &truth));
-    // What is left of the rate is less than the class has.
+    // The remaining error of the rate is less than that of the class.
     let mut closed = walk(&twice, DRIFT);
     closed.close().expect("a round");
     let sigma = |walk: &Walk| walk.strides[20].sigma_m[0].hypot(walk.strides[20].sigma_m[1]);
@@ -85,7 +86,7 @@ fn a_pause_turns_nothing() {
             |time_us: &mut u64| *time_us += if *time_us > 21_000_000 { 300_000_000 } else { 0 };
         walk.track.iter_mut().for_each(|point| rests(&mut point.time_us));
         walk.strides.iter_mut().for_each(|stride| rests(&mut stride.time_us));
-        // It stands where the second leg ended; that stride ends with its stance.
+        // The foot stands where the second leg ended; that stride ends with its stance.
         let stands = TrackPoint { time_us: 321_000_000, ..walk.track[21] };
         walk.track.insert(22, stands);
         (walk.strides[20].time_us, walk.strides[20].duration_s) = (stands.time_us, 301.0);
@@ -121,7 +122,8 @@ fn who_walks_elsewhere_stays() {
     assert_eq!(refused, "no right angles: there is no stride");
 }
 
-/// How many of 200 walks pass whose legs of eight strides lead anywhere, with pauses in which the heading drifts.
+/// The number of walks, of 200 whose legs of eight strides lead in any direction, that pass; in their pauses the
+/// heading drifts.
 fn passing(pause_s: u32) -> u32 {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
     let angle = Uniform::new(0.0, 360.0).expect("angles");
@@ -156,7 +158,7 @@ fn legs_that_lead_anywhere_seldom_pass_for_a_building() {
 
 #[test]
 fn a_long_walk_is_no_harder() {
-    // An hour and more; the last legs have turned by half a circle and more.
+    // More than an hour; the last legs have turned by more than half a circle.
     let hours: Vec<_> = BUILDING.iter().cycle().take(60 * BUILDING.len()).copied().collect();
     for drift in [0.0008, -0.0031] {
         let mut found = walk(&hours, drift);
@@ -181,7 +183,7 @@ fn rates_err_as_much_as_they_say() {
             Some((found.heading_rate? - drift) / angles.rate_sigma)
         })
         .collect();
-    // The most crooked may be so by chance.
+    // The most crooked buildings may be rejected by chance.
     let count = errors.len();
     println!("{count} of 200 buildings are found");
     assert!(count >= 190, "{count} of 200");

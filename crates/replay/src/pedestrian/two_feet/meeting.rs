@@ -1,27 +1,29 @@
-//! When two sensors of one walk are at one place.
+//! Meetings: times at which two sensors of one walk are at one place.
 
 use super::super::{Stride, Walk, position_at};
 use crate::metrics::distance;
 
-/// A foot that is so near its footprint stands there, m.
+/// The distance from its footprint within which a foot stands there, m.
 const STANDING: f64 = 0.1;
 
-/// Both at one place.
+/// A time at which both are at one place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Meeting {
     pub(super) time_us: u64,
-    /// Twice the index of each foot's footprint, counted from the start, and one more for a foot that is half way to the next.
+    /// Twice the index of each foot's footprint, counted from the start, plus one for a foot that is half way to the
+    /// next.
     pub(super) own: usize,
     pub(super) other: usize,
 }
 
 impl Meeting {
-    /// Whether neither moves.
+    /// Whether neither foot moves.
     pub(super) fn is_at_rest(&self) -> bool {
         self.own.is_multiple_of(2) && self.other.is_multiple_of(2)
     }
 
-    /// All of them in the order of time: of two feet, or, where those seldom pass each other, of two sensors that stand at once.
+    /// All meetings in the order of time: of two feet that pass each other, or, if that is rare, of two sensors that
+    /// stand at the same time.
     pub(super) fn all(own: &Walk, other: &Walk) -> Vec<Self> {
         let passes = passings(own, other).into_iter().map(|(time_us, moves, stands)| Self {
             time_us,
@@ -34,7 +36,7 @@ impl Meeting {
             other: 2 * moves + 1,
         });
         let mut all: Vec<_> = passes.chain(is_passed).collect();
-        // Of two feet each passes once a stride.
+        // Two feet pass each other once for each stride of either.
         let common = own.strides.iter().filter(|stride| is_in(other, stride.time_us)).count();
         if all.len() < common {
             let stand = |(index, stride): (usize, &Stride)| {
@@ -53,7 +55,7 @@ fn is_in(walk: &Walk, time_us: u64) -> bool {
     ends.is_some_and(|(first, last)| (first.time_us..=last.time_us).contains(&time_us))
 }
 
-/// Where a foot stands, in the plane, m.
+/// The position of a footprint in the plane, m.
 fn footprint(walk: &Walk, index: usize) -> [f64; 2] {
     let before = index.checked_sub(1).and_then(|last| walk.strides.get(last));
     let [x, y, _] = before.map_or(walk.start(), |stride| stride.position);
@@ -68,7 +70,8 @@ fn footprint_at(walk: &Walk, time_us: u64) -> Option<usize> {
     [left, left + 1].into_iter().filter(|it| *it <= walk.strides.len()).find(near)
 }
 
-/// When a foot passes the other, half way of a stride: the footprint from which it comes, and on which the other stands.
+/// The times at which a foot passes the other, half way through a stride, with the indices of the footprint that it
+/// leaves, and of the one on which the other stands.
 fn passings(moving: &Walk, standing: &Walk) -> Vec<(u64, usize, usize)> {
     let mut found = Vec::new();
     let mut rest = moving.track.as_slice();

@@ -10,29 +10,31 @@ use super::meeting::Meeting;
 use crate::chain::{Chain, Solution, Tie, Want};
 use crate::metrics::rms;
 
-/// Standard deviation of where a foot passes the other, each axis, m.
+/// Standard deviation of the place at which a foot passes the other, for each axis, m.
 const BESIDE: f64 = 0.1;
-/// Standard deviation of how far to the side it passes, m.
+/// Standard deviation of the sideways distance at which it passes, m.
 const WIDTH: f64 = 0.15;
-/// Beyond so many deviations a meeting counts less: a turn, a step to the side.
+/// The residual, in standard deviations, beyond which a meeting has less weight: a turn, a step to the side.
 const HUBER: f64 = 2.0;
-/// Differences of both rates that are tried first, to either side, and how many standard deviations the last of them is away.
+/// The number of differences between both rates that are tried first, to either side, and the largest of them in
+/// standard deviations.
 const TRIED: (i32, f64) = (200, 4.0);
 const ITERATIONS: usize = 50;
-/// A step of no unknown is larger in the end.
+/// The largest step of any unknown at which the iteration has converged.
 const SOLVED: f64 = 1e-7;
 
-/// Unknowns of the whole walk, in their order: how far the other sensor's frame is turned to the left, rad, …
+/// Index of the unknown angle by which the other sensor's frame is turned to the left, rad; first of the unknowns of
+/// the whole walk.
 const TURN: usize = 0;
-/// … rate of the heading, rad/s, and scale of this one, …
+/// Index of this path's heading rate, rad/s, followed by its scale.
 pub(super) const OWN: usize = 1;
-/// … of the other, …
+/// Index of the other path's heading rate, rad/s, followed by its scale.
 const OTHER: usize = 3;
-/// … and how far to its left this one passes the other, m.
+/// Index of the distance at which this foot passes to the left of the other, m.
 const SIDE: usize = 5;
 const UNKNOWNS: usize = 6;
 
-/// A foot's path and how large its errors are.
+/// The path of a foot, and the size of its errors.
 pub(super) struct Foot {
     pub(super) path: Path,
     errors: PathErrors,
@@ -43,29 +45,29 @@ impl Foot {
         Self { path: Path::of(walk), errors: PathErrors::of(walk) }
     }
 
-    /// Footprints from the start on, m.
+    /// The footprints from the start on, m.
     fn footprints(&self, rate: f64, scale: f64) -> Vec<Vector2<f64>> {
         let walked = self.path.walked(rate, scale).map(|(place, _)| place);
         std::iter::once(Vector2::zeros()).chain(walked).collect()
     }
 }
 
-/// What is known of two walks.
+/// The data of two walks.
 pub(super) struct Problem {
     pub(super) own: Foot,
     other: Foot,
     pub(super) meetings: Vec<Meeting>,
 }
 
-/// What is sought.
+/// A guess of the unknowns.
 pub(super) struct Guess {
     pub(super) unknowns: SVector<f64, UNKNOWNS>,
-    /// What is added at each meeting to where this foot is, seen from the other, m: by how much their frames begin apart, and
-    /// the strides' own errors, taken back.
+    /// The correction added at each meeting to the position of this foot relative to the other, m: the initial offset
+    /// between their frames, and the negative of the strides' own errors.
     corrections: Vec<Vector2<f64>>,
 }
 
-/// What was found.
+/// The solution of a problem.
 pub(super) struct Solved {
     pub(super) guess: Guess,
     pub(super) solution: Solution<2>,
@@ -88,7 +90,7 @@ impl Problem {
         ends.is_some_and(|(first, last)| (first.time_us..=last.time_us).contains(&time_us))
     }
 
-    /// The likeliest unknowns; none if they are not determined.
+    /// Solves for the most likely unknowns; `None` if they are not determined.
     pub(super) fn solve(&self) -> Option<Solved> {
         let mut guess = self.begin()?;
         for _ in 0..ITERATIONS {
@@ -107,7 +109,8 @@ impl Problem {
         None
     }
 
-    /// The turn of the other's frame and the difference of both rates with which the paths lie nearest to each other.
+    /// The rotation of the other's frame and the difference of both rates with which the paths are closest to each
+    /// other.
     fn begin(&self) -> Option<Guess> {
         let [own, other] = [self.own.errors, self.other.errors].map(|errors| errors.rate.powi(2));
         let (count, furthest) = TRIED;
@@ -119,8 +122,8 @@ impl Problem {
         Some(Guess { unknowns, corrections: vec![correction; self.meetings.len()] })
     }
 
-    /// The other path turned and moved onto this one (Procrustes), at these rates: the sum of the squared distances that are
-    /// left, m², the unknowns, and the correction that they share.
+    /// Turns and moves the other path onto this one (Procrustes), at these rates: returns the sum of the remaining
+    /// squared distances, m², the unknowns, and the correction common to all meetings.
     fn laid_together(&self, rates: [f64; 2]) -> (f64, SVector<f64, UNKNOWNS>, Vector2<f64>) {
         let own = self.own.footprints(rates[0], 0.0);
         let other = self.other.footprints(rates[1], 0.0);
@@ -142,10 +145,12 @@ impl Problem {
         (squares - 2.0 * cosine.hypot(sine), unknowns, correction)
     }
 
-    /// Where this foot is, seen from the other, at each meeting, with the derivatives by all unknowns.
+    /// The position of this foot relative to the other at each meeting, with the derivatives with respect to all
+    /// unknowns.
     ///
-    /// Those by rates and scales are those of the path in the middle, alike for both feet: of what turns both alike nothing is
-    /// known. By their own steps, whose errors turn with them, it would seem to be.
+    /// The derivatives with respect to rates and scales are those of the middle path, alike for both feet: nothing is
+    /// known of what turns both alike. With the derivatives of each foot's own steps, whose errors turn with them, it
+    /// would seem to be known.
     fn rows(&self, guess: &Guess) -> Vec<Row> {
         let unknown = |index: usize| guess.unknowns[index];
         let own = self.own.footprints(unknown(OWN), unknown(OWN + 1));
@@ -198,7 +203,7 @@ impl Problem {
                 chain.observe(state, &by, &shared, row.residual[axis], information);
             }
         }
-        // Half a footprint further is half of a stride's error.
+        // Half a footprint further adds half of a stride's error.
         let pairs = self.meetings.windows(2).zip(guess.corrections.windows(2));
         for (state, (meetings, corrections)) in pairs.enumerate() {
             let halves =
@@ -213,17 +218,17 @@ impl Problem {
         chain
     }
 
-    /// Root mean square of what no error of a path explains, m.
+    /// The root mean square of the residuals that no error of a path explains, m.
     pub(super) fn left_over(&self, guess: &Guess) -> f64 {
         rms(&self.rows(guess).iter().map(|row| row.residual.norm()).collect::<Vec<_>>())
     }
 
-    /// How far apart both are where they meet, root mean square, m.
+    /// The root mean square distance between both where they meet, m.
     pub(super) fn distance(&self, guess: &Guess) -> f64 {
         rms(&self.rows(guess).iter().map(|row| row.between.norm()).collect::<Vec<_>>())
     }
 
-    /// How the correction has changed since the first meeting, m.
+    /// The change of the correction since the first meeting, m.
     pub(super) fn corrections(&self, guess: &Guess) -> Vec<TrackPoint> {
         let first = guess.corrections.first().copied().unwrap_or_default();
         let point = |(meeting, correction): (&Meeting, &Vector2<f64>)| {
@@ -233,7 +238,7 @@ impl Problem {
         self.meetings.iter().zip(&guess.corrections).map(point).collect()
     }
 
-    /// Variance of that at a time, each axis, m², as if first and last were not correlated.
+    /// The variance of that change at a time, for each axis, m², as if first and last corrections were uncorrelated.
     pub(super) fn correction_variance(&self, solution: &Solution<2>, time_us: u64) -> f64 {
         let next = self.meetings.partition_point(|meeting| meeting.time_us < time_us);
         let of = |index: usize| solution.covariances.get(index).map_or(0.0, |it| 0.5 * it.trace());
@@ -241,7 +246,7 @@ impl Problem {
     }
 }
 
-/// Where both are at a meeting, each in its own frame, m.
+/// The positions of both at a meeting, each in its own frame, m.
 fn places(meeting: &Meeting, own: &[Vector2<f64>], other: &[Vector2<f64>]) -> [Vector2<f64>; 2] {
     let half_way = |footprints: &[Vector2<f64>], twice: usize| {
         0.5 * (footprints[twice / 2] + footprints[twice.div_ceil(2)])
@@ -249,11 +254,11 @@ fn places(meeting: &Meeting, own: &[Vector2<f64>], other: &[Vector2<f64>]) -> [V
     [half_way(own, meeting.own), half_way(other, meeting.other)]
 }
 
-/// A meeting as it is computed.
+/// The computed terms of a meeting.
 struct Row {
-    /// From the other foot to this one, m, corrected.
+    /// The vector from the other foot to this one, m, corrected.
     between: Vector2<f64>,
-    /// The same but for how far to the side they pass each other.
+    /// That vector minus the sideways distance at which they pass each other.
     residual: Vector2<f64>,
     slopes: [Vector2<f64>; UNKNOWNS],
 }

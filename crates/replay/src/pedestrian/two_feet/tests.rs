@@ -7,10 +7,10 @@ use nalgebra::{Rotation2, Vector2};
 use super::*;
 use crate::pedestrian::{SensorClass, Stride, TrackPoint};
 
-/// Steps of both feet, one a second, each a stride of 1.3 m.
+/// The number of steps of both feet, one per second, each a stride of 1.3 m.
 const STEPS: u32 = 160;
 
-/// What is wrong with a foot's path.
+/// The errors of a foot's path.
 #[derive(Default)]
 struct Wrong {
     rate: f64,
@@ -19,8 +19,8 @@ struct Wrong {
     noise: Option<Xoshiro256PlusPlus>,
 }
 
-/// A foot of a walk along a winding way, 10 cm to the side of it: the left one moves in even seconds, the right one in odd ones.
-/// Its frame begins where it stands at first, and is turned by `frame` to the left.
+/// A foot of a walk along a winding way, 10 cm to the side of it: the left foot moves in even seconds, the right foot
+/// in odd ones. Its frame begins at its first position and is turned by `frame` to the left.
 fn foot(is_left: bool, frame: f64, mut wrong: Wrong) -> Walk {
     let heading = |step: u32| 1.2 * (f64::from(step) / 17.0).sin();
     let side = if is_left { 0.1 } else { -0.1 };
@@ -48,7 +48,7 @@ fn foot(is_left: bool, frame: f64, mut wrong: Wrong) -> Walk {
             }
             place = error;
         }
-        // It moves in the first half of its second.
+        // The foot moves in the first half of its second.
         for quarter in 1..=4_u32 {
             let share = f64::from(quarter.min(2)) / 2.0;
             let at = from + share * (place - from);
@@ -56,7 +56,7 @@ fn foot(is_left: bool, frame: f64, mut wrong: Wrong) -> Walk {
             walk.track.push(TrackPoint { time_us, position: [at.x, at.y, 0.0] });
         }
         if moves {
-            // It stands until it moves again.
+            // The foot stands until it moves again.
             let time_us = u64::from(4 * (step + 1)) * 250_000 + 1_000_000;
             walk.strides.push(Stride {
                 time_us,
@@ -74,7 +74,7 @@ fn foot(is_left: bool, frame: f64, mut wrong: Wrong) -> Walk {
     walk
 }
 
-/// Mean square of the errors of footprints, m².
+/// The mean square of the errors of footprints, m².
 fn squares(walk: &Walk, truth: &Walk) -> f64 {
     let pairs = walk.strides.iter().zip(&truth.strides);
     let off = |(a, b): (&Stride, &Stride)| {
@@ -176,7 +176,7 @@ fn errors_of_strides_are_shared_and_scales_evened() {
         let noisy = |is_left, seed| {
             let noise = Some(Xoshiro256PlusPlus::seed_from_u64(seed));
             let mut walk = foot(is_left, 0.0, Wrong { noise, ..Wrong::default() });
-            // Of a sensor that drifts little.
+            // A sensor that drifts little.
             walk.sensor = SensorClass::Industrial;
             walk
         };
@@ -219,7 +219,7 @@ fn strides_that_the_other_foot_did_not_see_are_as_uncertain_as_before() {
 
 #[test]
 fn a_long_walk_with_a_large_difference_is_found() {
-    // Ten times as slow, and drifting a tenth as fast: half an hour, in which the frames turn by more than half a round.
+    // Ten times as slow, and drifting a tenth as fast: half an hour, in which the frames turn by more than half a turn.
     let left = |rate| foot(true, 0.0, Wrong { rate, ..Wrong::default() });
     let right = |rate| foot(false, 0.4, Wrong { rate, ..Wrong::default() });
     for difference in [0.02, -0.03] {
@@ -245,7 +245,7 @@ fn only_walks_that_are_not_corrected_are_joined() {
     left.join_other_foot(&right).expect("two feet");
     assert!(right.join_other_foot(&left).is_err_and(|why| why.contains("joined before")));
     assert!(left.join_other_foot(&right).is_err_and(|why| why.contains("joined before")));
-    // What is left counts where the walk is closed.
+    // The remaining errors count when the walk is closed.
     let (alone, left) = (PathErrors::of(&right), PathErrors::of(&left));
     assert!(left.rate < 0.8 * alone.rate && left.stride < 0.9 * alone.stride, "{left:?}");
 }

@@ -1,4 +1,4 @@
-//! Whether ranges and anchors can belong together: what least squares leave over, as it is and with one thing changed.
+//! Consistency of ranges and anchors: the residuals of least squares, as they are and with one thing changed.
 
 mod explanation;
 
@@ -14,23 +14,28 @@ use crate::Finding;
 use crate::metrics::median;
 use crate::robot::{Anchors, Range};
 
-/// What the ranges leave over is a contradiction that nothing explains, where walls and people alone may do as much, from here on, m and of the usual range.
+/// The residual, m and as a share of the usual range, from which on a contradiction that nothing explains is a fault of
+/// the geometry; walls and people alone may cause smaller ones.
 const UNEXPLAINED_M: f64 = 1.5;
 const UNEXPLAINED_SHARE: f64 = 0.02;
-/// One that nothing explains is a doubt from here on, m and of the usual range: sound recordings of four anchors leave up to 0.34 m,
-/// and with an anchor that is misplaced by a metre most of what is farther off than 3 σ leaves more than 0.4 m.
+/// The residual from which on a contradiction that nothing explains is a doubt, m, in addition to the share of the
+/// usual range: sound recordings of four anchors leave up to 0.34 m, and with an anchor that is misplaced by a metre
+/// most cases that are off by more than 3 σ leave more than 0.4 m.
 const DOUBT_M: f64 = 0.35;
-/// Where walls and people might do as much, one change that explains it is told from here on, m.
+/// The residual from which on a single change that explains it is reported, although walls and people might cause as
+/// much, m.
 const SUSPICION_M: f64 = 0.15;
-/// Three anchors in the plane, or four in space, leave one range to spare: enough to see a contradiction, too few to find its cause.
-/// Positions are then wrong by a multiple of it, so it is told from here on, m.
+/// The residual from which on a contradiction without a range to spare is reported, m. Three anchors in the plane, or
+/// four in space, leave one range beyond the unknowns: enough to see a contradiction, too few to find its cause.
+/// Positions are then wrong by a multiple of it.
 const NOTHING_TO_SPARE_M: f64 = 0.2;
 
-/// Anchors that are no farther from a plane, or a line, than so on average tell hardly more of its two sides than what they measure wrong, m.
+/// The mean distance of anchors from a plane, or a line, up to which their ranges tell hardly more of its two sides
+/// than their own errors, m.
 const FLAT_M: f64 = 0.2;
 
-/// Whether a tag has the ranges of another: its mirror image, where the anchors of a tag in space lie in one plane, or those of a tag
-/// in the plane stand in one line, unless the room is known.
+/// A finding if a tag has the same ranges as its mirror image: where the anchors of a tag in space lie in one plane, or
+/// those of a tag in the plane stand in one line, unless the room is known.
 pub(super) fn mirror(anchors: &Anchors, height: KnownHeight, room: bool) -> Option<Finding> {
     let is_in_space = height == KnownHeight::Unknown;
     let fewest = if is_in_space { 1 } else { 3 };
@@ -58,7 +63,8 @@ pub(super) fn mirror(anchors: &Anchors, height: KnownHeight, room: bool) -> Opti
     })
 }
 
-/// How far from a line in the plane, and from a plane in space, places are on average (root mean square), m; none of places that are none.
+/// The root mean square distance of places from a line in the plane, and from a plane in space, m; `None` without
+/// finite places.
 pub(super) fn flatness(places: &[[f64; 3]]) -> Option<[f64; 2]> {
     if places.is_empty() || !places.iter().flatten().all(|it| it.is_finite()) {
         return None;
@@ -73,7 +79,7 @@ pub(super) fn flatness(places: &[[f64; 3]]) -> Option<[f64; 2]> {
     Some(least.map(|least| least.max(0.0).sqrt()))
 }
 
-/// What the geometry shows; nothing if there are too few ranges at a time to contradict each other.
+/// The finding about the geometry; `None` if there are too few ranges at a time to contradict each other.
 pub(super) fn check(
     anchors: &Anchors,
     parts: &[Vec<Range>],
@@ -81,7 +87,7 @@ pub(super) fn check(
     is_calibrated: bool,
 ) -> Option<Finding> {
     let (height, is_given) = match height {
-        // A tag whose height changes with time is no plane's.
+        // A tag whose height changes with time does not move in a plane.
         KnownHeight::Varying => return None,
         KnownHeight::Unknown | KnownHeight::NotFound => (None, false),
         KnownHeight::Found(metres) => (Some(metres), false),
@@ -170,12 +176,12 @@ mod tests {
         assert!(!told(&line[..2], KnownHeight::Said(1.0)), "of two anchors all know");
     }
 
-    /// What is told of ranges of a tag that is carried through a room with anchors in its corners, 1 m below them.
+    /// The reason found for ranges of a tag that is carried through a room with anchors in its corners, 1 m below them.
     fn reason(change: impl Fn(f64) -> f64, places: &[[f64; 3]]) -> Option<Reason> {
         reason_among(change, places, places)
     }
 
-    /// The same with anchors that stand elsewhere than the list says.
+    /// The reason found if the anchors stand at places other than the listed ones.
     fn reason_among(
         change: impl Fn(f64) -> f64,
         places: &[[f64; 3]],

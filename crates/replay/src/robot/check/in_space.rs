@@ -1,4 +1,4 @@
-//! Whether a tag that is taken to keep its height does, as a tracker in space sees it.
+//! Checks that a tag that is assumed to keep its height does so, with a tracker in space.
 
 use kestirim_health::{Health, Reason};
 
@@ -6,20 +6,21 @@ use super::geometry;
 use crate::Finding;
 use crate::robot::{Dimensions, Event, Setup, track};
 
-/// A tag is at one height if eight of ten are no farther apart, m, …
+/// The span within which eight of ten heights of a tag at one height lie, m.
 const SPAN_M: f64 = 0.5;
-/// … or than so many standard deviations: of a normal distribution they are 2.6 apart, and what the anchors measure wrong
-/// changes with the place.
+/// The span within which eight of ten heights of a tag at one height lie, in standard deviations, if that is larger:
+/// for a normal distribution it is 2.6, and the errors of the anchors change with the place.
 const SPAN_SIGMAS: f64 = 5.0;
-/// Fewer anchors tell no height, …
+/// The fewest anchors that tell a height.
 const FEWEST_ANCHORS: usize = 4;
-/// … nor do those that are no farther from a plane than this on average, m: the tag's mirror image is followed at times, …
+/// The mean distance of anchors from a plane up to which they tell no height, m: the tracker follows the tag's mirror
+/// image at times.
 const FLAT_M: f64 = 0.3;
-/// … and fewer positions nothing.
+/// The fewest positions from which heights are judged.
 const FEWEST: usize = 50;
 
-/// The finding that the tag's height changes; none if it does not, or the anchors do not tell heights. `known` is what a tracker in
-/// the plane knows.
+/// The finding that the tag's height changes; `None` if it does not, or the anchors do not tell heights. `known` is the
+/// setup of a tracker in the plane.
 pub(super) fn height(known: &Setup, parts: &[&[Event]]) -> Option<Finding> {
     let [_, from_plane] = geometry::flatness(&known.anchors)?;
     if known.anchors.len() < FEWEST_ANCHORS || from_plane < FLAT_M {
@@ -65,10 +66,10 @@ mod tests {
 
     const PLACES: [[f64; 3]; 5] =
         [[0.0, 0.0, 0.2], [6.0, 0.0, 2.5], [6.0, 5.0, 0.2], [0.0, 5.0, 2.5], [3.0, 0.0, 1.8]];
-    /// What each measures too long, m.
+    /// The biases of the anchors, m.
     const BIASES: [f64; 5] = [0.1, -0.05, 0.15, 0.0, -0.1];
 
-    /// What is told of a tag that is carried round at these heights.
+    /// The finding about a tag that is carried around at these heights.
     fn told(places: &[[f64; 3]], height: impl Fn(f64) -> f64) -> Option<Finding> {
         let mut events = Vec::new();
         for epoch in 0..600_u32 {

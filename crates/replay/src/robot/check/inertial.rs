@@ -1,4 +1,4 @@
-//! Whether accelerations of the IMU can be what they are taken for.
+//! Checks that the accelerations of the IMU are plausible.
 
 use kestirim_health::Reason;
 
@@ -6,16 +6,17 @@ use crate::Finding;
 use crate::metrics::median;
 use crate::robot::Event;
 
-/// Fewer say nothing.
+/// The fewest accelerations that are judged.
 const FEWEST: usize = 50;
-/// With gravity they are about so large in units of it, …
+/// The usual magnitude of accelerations that include gravity, in units of g.
 const IN_G: std::ops::Range<f64> = 0.9..1.1;
-/// … and keep to it so closely, as accelerations without gravity do not.
+/// The median deviation from the usual magnitude below which accelerations include gravity, in units of g; without
+/// gravity it is larger.
 const CLOSELY: f64 = 0.1;
-/// No tag is usually accelerated so much, m/s².
+/// The largest usual acceleration of a tag, m/s².
 const LARGEST: f64 = 50.0;
 
-/// That they are all the same, or in another unit.
+/// A finding if accelerations are all the same, or in another unit.
 pub(super) fn find(parts: &[&[Event]]) -> Option<Finding> {
     let accelerations: Vec<[f64; 3]> = parts
         .iter()

@@ -1,4 +1,4 @@
-//! Ranges to an anchor that jump from one to the next as no tag does: another tag's among them, or noise of metres.
+//! Ranges to an anchor that jump as no tag moves: another tag's ranges among them, or noise of metres.
 
 use std::collections::BTreeMap;
 
@@ -7,14 +7,14 @@ use kestirim_health::Reason;
 use crate::Finding;
 use crate::robot::Range;
 
-/// A tag is taken to move by no more than this, m/s …
+/// The largest assumed speed of a tag, m/s.
 const SPEED: f64 = 3.0;
-/// … and what radios and walls do to ranges is to jump by less, m, most of the time.
+/// The largest jump that radios and walls cause most of the time, m.
 const JUMP_M: f64 = 1.0;
-/// Ranges that are farther apart tell nothing, s.
+/// The time between ranges beyond which they are not compared, s.
 const APART_S: f64 = 2.0;
-/// So many must have jumped, and so large a share: one in seventeen outdoors among people is the most that was recorded, and of one
-/// wild range in ten, which a tracker leaves out, two in ten jump.
+/// The fewest jumps that are reported, and their smallest share (`SHARE`): one in seventeen outdoors among people is
+/// the most that was recorded, and with one wild range in ten, which a tracker leaves out, two in ten jump.
 const FEWEST: usize = 20;
 const SHARE: f64 = 0.3;
 
@@ -52,14 +52,15 @@ pub(super) fn find<'a>(parts: &[Vec<Range>], name: &impl Fn(usize) -> &'a str) -
     ))
 }
 
-/// The last range to an anchor, and how fast it changed, m/s, if that is known.
+/// The last range to an anchor, and its rate of change, m/s, if known.
 #[derive(Clone, Copy)]
 struct Before {
     range: Range,
     rate: Option<f64>,
 }
 
-/// From one range to the next: how fast it changed, m/s, and whether it jumped, if the rate before is known.
+/// The step from one range to the next: its rate of change, m/s, and whether it is a jump, if the previous rate is
+/// known.
 #[derive(Clone, Copy)]
 struct Step {
     rate: f64,
@@ -67,7 +68,7 @@ struct Step {
 }
 
 impl Before {
-    /// A jump is more than a tag moves, and other than it moved before.
+    /// The step to the next range. A jump is larger than a tag moves, and differs from its previous motion.
     fn step_to(&self, next: &Range) -> Option<Step> {
         let seconds = (next.time_us - self.range.time_us) as f64 * 1e-6;
         let most = JUMP_M + SPEED * seconds;
@@ -78,7 +79,7 @@ impl Before {
     }
 }
 
-/// How many of an anchor's ranges jump.
+/// The number of an anchor's ranges that jump.
 #[derive(Default)]
 struct Count {
     jumps: usize,
@@ -91,7 +92,7 @@ impl Count {
         self.all += 1;
     }
 
-    /// Their share, if it is too large.
+    /// The share of jumps, if it is too large.
     fn share(&self) -> Option<f64> {
         let share = self.jumps as f64 / self.all as f64;
         (self.jumps >= FEWEST && share > SHARE).then_some(share)
@@ -102,8 +103,8 @@ impl Count {
 mod tests {
     use super::*;
 
-    /// Ranges to three anchors, 10 Hz each but for every third, of a tag that goes by at this speed, m/s; those to one of them, or
-    /// to all, are changed.
+    /// The finding for ranges to three anchors, 10 Hz each without every third, of a tag that passes at this speed,
+    /// m/s; those to one anchor, or to all, are changed.
     fn found(speed: f64, of_all: bool, change: impl Fn(i64, f64) -> f64) -> Option<Finding> {
         let ranges = |k: i64| {
             let x = 0.1 * speed * (k - 100) as f64;

@@ -1,17 +1,17 @@
-//! Ranges to several anchors at one moment.
+//! Moments: ranges to several anchors at the same time.
 
 use std::collections::BTreeMap;
 
 use crate::robot::Range;
 
-/// So many moments are looked at, spread over the recording.
+/// The number of moments that are used, spread over the recording.
 const MOMENTS: usize = 80;
-/// Ranges of so long make a moment, µs: a robot moves 10 cm meanwhile.
+/// The time within which ranges form a moment, µs: a robot moves 10 cm meanwhile.
 const WINDOW_US: i64 = 200_000;
-/// Of radios that are slower, or take turns, ranges are interpolated: between two that are no farther apart, µs.
+/// The longest gap over which ranges are interpolated, µs, for radios that are slower or take turns.
 const GAP_US: i64 = 1_500_000;
 
-/// The ranges of a moment: a range an anchor.
+/// The ranges of a moment: one per anchor.
 pub(super) type Moment = Vec<(usize, f64)>;
 
 /// Moments at which several anchors were heard, spread over the recording.
@@ -31,7 +31,7 @@ pub(super) fn at_once(parts: &[Vec<Range>]) -> Vec<Moment> {
     spread(all)
 }
 
-/// Ranges of all anchors at the moments at which one is measured, as lines between those before and after would have them.
+/// Ranges of all anchors at the times at which one is measured, interpolated linearly between those before and after.
 pub(super) fn interpolated(parts: &[Vec<Range>]) -> Vec<Moment> {
     let mut all = Vec::new();
     for ranges in parts {
@@ -39,7 +39,7 @@ pub(super) fn interpolated(parts: &[Vec<Range>]) -> Vec<Moment> {
         for range in ranges.iter().filter(|it| it.metres.is_finite() && it.metres > 0.0) {
             of_anchors.entry(range.anchor).or_default().push(*range);
         }
-        // More than are wanted, as some will not do.
+        // More moments than are needed, as some will not be usable.
         let every = (ranges.len() / (8 * MOMENTS)).max(1);
         all.extend(ranges.iter().step_by(every).map(|now| {
             let at = |ranges: &Vec<Range>| between(ranges, now.time_us);
@@ -49,7 +49,7 @@ pub(super) fn interpolated(parts: &[Vec<Range>]) -> Vec<Moment> {
     spread(all)
 }
 
-/// The range at a time, of one anchor's.
+/// The range of one anchor, interpolated at a time.
 fn between(ranges: &[Range], time_us: i64) -> Option<f64> {
     let after = ranges.partition_point(|range| range.time_us < time_us);
     let next = ranges.get(after)?;
@@ -65,7 +65,7 @@ fn between(ranges: &[Range], time_us: i64) -> Option<f64> {
     Some(before.metres + (next.metres - before.metres) * share)
 }
 
-/// Those of them that can contradict themselves, as many as are wanted.
+/// The moments that can contradict themselves, thinned to the number that is needed.
 fn spread(mut all: Vec<Moment>) -> Vec<Moment> {
     all.retain(|moment| moment.len() >= 3);
     let every = (all.len() / MOMENTS).max(1);

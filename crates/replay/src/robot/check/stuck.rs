@@ -1,4 +1,5 @@
-//! Ranges that stay the same to the last digit: an anchor's, or those of a hub or a logger that says its last again.
+//! Ranges that stay the same to the last digit: those of one anchor, or of a hub or a logger that repeats the last
+//! ones.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,16 +9,17 @@ use crate::Finding;
 use crate::metrics::standard_deviation;
 use crate::robot::Range;
 
-/// A range that stays the same to the last digit for so long and so often is stuck, s, …
+/// The time for which a stuck range stays the same to the last digit, s; it must also do so `STUCK` times.
 const STUCK_S: f64 = 3.0;
 const STUCK: usize = 15;
-/// … if the others change meanwhile by more than noise, m.
+/// The standard deviation of the other ranges meanwhile above which the tag moves, m.
 pub(super) const MOVING_M: f64 = 0.3;
 
-/// If more than one in so many ranges is that of before at other times, too, no hub repeats: centimetres repeat in one of ten.
+/// A hub does not repeat if more than one in this many ranges equals the previous one at other times, too: centimetres
+/// repeat in one of ten.
 const COARSE: usize = 2;
 
-/// An anchor whose range stays while those of others change.
+/// A finding about an anchor whose range stays constant while those of others change.
 pub(super) fn one<'a>(
     ranges: &[Range],
     cut_at: Option<f64>,
@@ -50,17 +52,17 @@ pub(super) fn one<'a>(
     })
 }
 
-/// Ranges to an anchor that are all the same.
+/// A run of equal ranges to an anchor.
 struct Run {
     anchor: usize,
     metres: f64,
     count: usize,
-    /// Their places in the log.
+    /// The index of the first and of the last range in the log.
     first: usize,
     last: usize,
 }
 
-/// The runs of each anchor, in the order in which they end: looked at once each, however long they are.
+/// The runs of each anchor, in the order in which they end, found in one pass however long they are.
 fn runs(ranges: &[Range]) -> Vec<Run> {
     let mut going: BTreeMap<usize, Run> = BTreeMap::new();
     let mut runs = Vec::new();
@@ -78,7 +80,8 @@ fn runs(ranges: &[Range]) -> Vec<Run> {
     runs
 }
 
-/// All ranges at once, for longer than the noise of radios lets them: what is measured meanwhile is not known.
+/// A finding if all ranges stay constant for longer than the noise of radios permits: what was measured meanwhile is
+/// unknown.
 pub(super) fn all(ranges: &[Range], cut_at: Option<f64>) -> Option<Finding> {
     let mut before = BTreeMap::new();
     let (mut begun_us, mut count, mut heard) = (0, 0, BTreeSet::new());
@@ -96,7 +99,7 @@ pub(super) fn all(ranges: &[Range], cut_at: Option<f64>) -> Option<Finding> {
             (longest_us, in_it) = (range.time_us - begun_us, count);
         }
     }
-    // Where ranges repeat at other times, too, their last digit is coarser than their noise.
+    // If ranges repeat at other times, too, their last digit is coarser than their noise.
     if COARSE * (repeats - in_it) > all - in_it {
         return None;
     }

@@ -1,11 +1,11 @@
-//! Whether IMU and wheels were read while ranges were measured.
+//! Checks that IMU and wheels were read while ranges were measured.
 
 use kestirim_health::Reason;
 
 use crate::Finding;
 use crate::robot::Event;
 
-/// A sensor that is read for less than this share of the time in which ranges come has another clock, or stopped.
+/// The share of the time with ranges below which a sensor that is read in it has another clock, or stopped.
 const SHARE: f64 = 0.2;
 
 /// The first sensor that has hardly any time in common with the ranges.

@@ -1,42 +1,42 @@
-//! Whether the wheels tell the way that the ranges show.
+//! Checks that the wheels agree with the motion that the ranges show.
 
 use kestirim_health::{Health, Reason};
 
 use crate::Finding;
 use crate::robot::{Epoch, Event, Setup, Wheels, track};
 
-/// What is compared is how far apart two places are that the robot was at so long after each other, µs: neither the start nor the
-/// heading must be known.
+/// The time between the two places whose distance is compared, µs: neither the start nor the heading must be known.
 const APART_US: i64 = 5_000_000;
-/// Places are compared so often, µs.
+/// The interval at which places are compared, µs.
 const EVERY_US: i64 = 1_000_000;
-/// Between two samples of the wheels no more time must pass, µs.
+/// The longest time between two samples of the wheels, µs.
 const LONGEST_US: i64 = 1_000_000;
-/// The distances disagree if they differ by so many standard deviations of the ranges', …
+/// The difference at which distances disagree, in standard deviations of the ranges'.
 const SIGMAS: f64 = 3.0;
-/// … and by this share of the longer one: wheels have another scale, and slip.
+/// The difference at which distances disagree, as a share of the longer one: wheels have scale errors, and slip.
 const SHARE: f64 = 0.5;
-/// From this share of the comparisons on it is told, because sound wheels slip at times, …
+/// The share of disagreeing comparisons above which it is reported: sound wheels slip at times.
 const OFTEN: f64 = 0.4;
-/// … of which there are so many.
+/// The fewest comparisons that are judged.
 const FEWEST: usize = 10;
 
-/// Steps of the clock that are tried, µs, and how many of them to either side.
+/// The step of the clock offsets that are tried, µs; `SHIFTS` is the number of them to either side.
 const SHIFT_US: i64 = 500_000;
 const SHIFTS: i64 = 20;
-/// Fewer steps are what a logger may be late by.
+/// The fewest steps that are reported: a logger may be late by fewer.
 const LATE: i64 = 2;
-/// Another clock explains the wheels if it leaves no more than this share of the disagreement, …
+/// The share of the disagreement that another clock may leave to explain the wheels.
 const LEFT: f64 = 0.6;
-/// … which is this large at least, m, on average. No distance counts more than the second number.
+/// The smallest mean disagreement for which other clocks are tried, m, and the limit to which each is clipped, m.
 const DISAGREEMENT_M: [f64; 2] = [0.2, 2.0];
-/// So many distances are compared at least, between places whose standard deviations are below the second number, m.
+/// The fewest distances that are compared for the clock, between places whose standard deviations are below `SHARP_M`,
+/// m.
 const FEWEST_TIMED: usize = 20;
 const SHARP_M: f64 = 1.0;
 
-/// Two moments between which the ranges tell a distance.
+/// Two times between which the ranges give a distance.
 struct Compared {
-    /// Which of the ways of the wheels.
+    /// The index among the ways of the wheels.
     way: usize,
     from_us: i64,
     to_us: i64,
@@ -45,11 +45,11 @@ struct Compared {
     sigma: f64,
 }
 
-/// Times, µs, and places, m.
+/// A way: times, µs, and places, m.
 type Way = Vec<(i64, [f64; 2])>;
 
-/// The finding that wheels and ranges contradict each other; none if they do not, or do not tell. `known` is what a tracker knows
-/// that has no wheels.
+/// The finding that wheels and ranges contradict each other; `None` if they do not, or do not tell. `known` is the
+/// setup of a tracker without wheels.
 pub(super) fn find(known: &Setup, parts: &[&[Event]]) -> Option<Finding> {
     let (mut ways, mut pairs, mut timed) = (Vec::new(), Vec::new(), Vec::new());
     for events in parts {
@@ -100,7 +100,7 @@ pub(super) fn find(known: &Setup, parts: &[&[Event]]) -> Option<Finding> {
     })
 }
 
-/// Epochs that serve, and those some seconds after them.
+/// Pairs of usable epochs that are `APART_US` apart.
 fn compared(way: usize, epochs: &[Epoch], serves: impl Fn(&Epoch) -> bool) -> Vec<Compared> {
     let mut pairs = Vec::new();
     let mut next_us = i64::MIN;
@@ -119,7 +119,7 @@ fn compared(way: usize, epochs: &[Epoch], serves: impl Fn(&Epoch) -> bool) -> Ve
     pairs
 }
 
-/// By how much the wheels are late, s, if another clock explains them far better.
+/// The delay of the wheels, s, if another clock explains them far better.
 fn late(ways: &[Way], pairs: &[Compared]) -> Option<f64> {
     let [least, most] = DISAGREEMENT_M;
     let off = |pair: &Compared, shift: i64| {
@@ -127,7 +127,8 @@ fn late(ways: &[Way], pairs: &[Compared]) -> Option<f64> {
         let wheels = driven(&ways[pair.way], from, to)?;
         Some((pair.ranges - wheels).abs().min(most))
     };
-    // Each clock is compared with that of the log where both tell something: at its ends a log may be at its worst.
+    // Each clock is compared with that of the log only where both can be evaluated: at its ends, a log may be at its
+    // worst.
     let left = |shift: i64| {
         let both = |pair| Some([off(pair, 0)?, off(pair, shift)?]);
         let all: Vec<[f64; 2]> = pairs.iter().filter_map(both).collect();
@@ -140,13 +141,13 @@ fn late(ways: &[Way], pairs: &[Compared]) -> Option<f64> {
     (shift.abs() >= LATE && share < LEFT).then_some((shift * SHIFT_US) as f64 * 1e-6)
 }
 
-/// How far apart the ranges put a tag at two epochs, m, and the standard deviation.
+/// The distance between the positions from ranges at two epochs, m, and its standard deviation.
 fn distance(a: &Epoch, b: &Epoch) -> Option<(f64, f64)> {
     let ([x, y, _], [u, v, _]) = (a.position?, b.position?);
     Some(((u - x).hypot(v - y), a.sigma_m()?.hypot(b.sigma_m()?)))
 }
 
-/// The way that the wheels tell: times, µs, and places, m, from where it begins, which is anywhere.
+/// The way according to the wheels: times, µs, and places, m, relative to an arbitrary start.
 fn way(events: &[Event]) -> Way {
     let mut way = Vec::new();
     let (mut place, mut heading) = ([0.0; 2], 0.0_f64);
@@ -169,7 +170,7 @@ fn way(events: &[Event]) -> Way {
     way
 }
 
-/// How far apart the wheels put two moments, m; none if they say nothing for a while in between.
+/// The distance between the positions from the wheels at two times, m; `None` if there is a gap in between.
 fn driven(way: &[(i64, [f64; 2])], from_us: i64, to_us: i64) -> Option<f64> {
     let at = |time_us: i64| way.partition_point(|(at_us, _)| *at_us < time_us);
     let [first, last] = [at(from_us).checked_sub(1)?, at(to_us)];
@@ -187,7 +188,7 @@ mod tests {
     const PLACES: [[f64; 3]; 4] =
         [[0.0, 0.0, 2.0], [8.0, 0.0, 2.0], [8.0, 6.0, 2.0], [0.0, 6.0, 2.0]];
 
-    /// What is told of a robot that drives an oval at 0.5 m/s, with wheels that say something else.
+    /// The finding about a robot that drives an oval at 0.5 m/s, with wheels that report something else.
     fn told(say: impl Fn(f64, Wheels) -> Wheels) -> Option<Finding> {
         let mut events = Vec::new();
         let (mut place, mut heading) = ([2.0, 1.5], 0.0_f64);
@@ -211,7 +212,7 @@ mod tests {
         find(&Setup::new(&PLACES, 0.3), &[&events])
     }
 
-    /// The robot of above stops for two seconds now and then, as its wheels say so long before or after.
+    /// The finding about a robot that stops for two seconds now and then, while its wheels report that `late_us` later.
     fn told_late(late_us: i64) -> Option<Finding> {
         let mut events = Vec::new();
         let mut place = 0.5_f64;

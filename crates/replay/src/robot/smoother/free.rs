@@ -1,4 +1,4 @@
-//! Motion of a tag that may do anything: its velocity wanders, and decays.
+//! A motion model for a tag that may move in any way: a random walk of the velocity, which decays.
 
 use kestirim_uwb_tracker::Config;
 use nalgebra::{DVector, Matrix2, SMatrix, SVector};
@@ -8,7 +8,7 @@ use super::knots::Knot;
 use super::problem::Motion;
 use crate::chain::Tie;
 
-/// Position and velocity of D axes each, N = 2 D.
+/// The motion model, with position and velocity along each of D axes, N = 2 D.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Free<const D: usize, const N: usize> {
     /// Power spectral density of the acceleration, m²/s³.
@@ -17,17 +17,17 @@ pub(super) struct Free<const D: usize, const N: usize> {
     decay_time: f64,
 }
 
-/// A velocity decays so much more slowly than with the tracker. That wants it for the time in which nothing is heard, of
-/// which a smoother knows the end.
+/// The factor by which a velocity decays more slowly than in the tracker. The tracker needs the decay during silences;
+/// a smoother knows how they end.
 const SLOWER: f64 = 4.0;
-/// Where a velocity does not decay, it does in so long, s.
+/// The time constant where a velocity does not decay, s.
 const LONG: f64 = 1e4;
-/// An interval of a smaller share of the time constant has a series, in which nothing cancels.
+/// The share of the time constant below which an interval uses a series, which avoids cancellation.
 const SHORT: f64 = 0.02;
-/// Variance that any interval adds to a coordinate, m²: epochs some microseconds apart would be tied more firmly than
-/// numbers have digits.
+/// The variance that any interval adds to a coordinate, m²: epochs some microseconds apart would otherwise be tied more
+/// firmly than the precision of numbers permits.
 const LEAST_NOISE: f64 = 1e-8;
-/// No tag is faster beforehand, m²/s².
+/// The largest prior variance of a velocity, m²/s².
 const FASTEST: f64 = 4.0;
 
 impl<const D: usize, const N: usize> Free<D, N> {
@@ -36,8 +36,9 @@ impl<const D: usize, const N: usize> Free<D, N> {
         Self { density, decay_time: config.decay_time.map_or(LONG, |time| SLOWER * time) }
     }
 
-    /// An axis after an interval (s): its transition, and a root of the inverse of its noise. Source: Bar-Shalom, Li and
-    /// Kirubarajan, *Estimation with Applications to Tracking and Navigation*, 2001, 8.2.2, with a velocity that decays.
+    /// The transition of one axis over an interval (s), and a root of the inverse of its noise. Source: Bar-Shalom, Li
+    /// and Kirubarajan, *Estimation with Applications to Tracking and Navigation*, 2001, 8.2.2, with a velocity that
+    /// decays.
     fn axis(&self, interval: f64) -> (Matrix2<f64>, Matrix2<f64>) {
         let (tau, share) = (self.decay_time, interval / self.decay_time);
         let (kept, lost) = ((-share).exp(), -(-share).exp_m1());
@@ -49,14 +50,14 @@ impl<const D: usize, const N: usize> Free<D, N> {
         let position = self.density * position + LEAST_NOISE;
         let both = self.density * 0.5 * (tau * lost).powi(2);
         let velocity = self.density * 0.5 * tau * (1.0 - kept * kept);
-        // Of the noise's inverse, L Lᵀ: Lᵀ weighs.
+        // The inverse of the noise is L Lᵀ: the weight is Lᵀ.
         let root = (position - both * both / velocity).sqrt().recip();
         let weight = Matrix2::new(root, -root * both / velocity, 0.0, velocity.sqrt().recip());
         (Matrix2::new(1.0, tau * lost, 0.0, kept), weight)
     }
 }
 
-/// A matrix of an axis for each of D.
+/// Repeats the matrix of an axis for each of D axes.
 fn of_all<const D: usize, const N: usize>(axis: &Matrix2<f64>) -> SMatrix<f64, N, N> {
     SMatrix::from_fn(|i, j| if i % D == j % D { axis[(i / D, j / D)] } else { 0.0 })
 }
@@ -67,7 +68,7 @@ impl<const D: usize, const N: usize> Motion<N> for Free<D, N> {
     }
 
     fn prior(&self) -> SVector<f64, N> {
-        // As fast as the model has it after a long time.
+        // The stationary velocity variance of the model.
         let speed = (0.5 * self.density * self.decay_time).min(FASTEST);
         SVector::from_fn(|i, _| if i < D { 0.0 } else { speed.recip() })
     }
@@ -100,7 +101,7 @@ mod tests {
         for interval in [1e-3, 0.1, 0.159, 0.161, 1.0, 30.0] {
             let (_, weight) = motion.axis(interval);
             let noise = (weight.transpose() * weight).try_inverse().unwrap();
-            // The noise as the integral over the interval of what comes in.
+            // The noise as the integral of the driving noise over the interval.
             let steps = 20_000;
             let mut expected = Matrix2::zeros();
             for step in 0..steps {

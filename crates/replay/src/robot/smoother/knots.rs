@@ -1,53 +1,55 @@
-//! When the tag was somewhere, and what was measured then.
+//! Knots: the times of a tag's positions, and the measurements at them.
 
 use super::super::{Dimensions, Epoch, Event, Range, Reception, Setup};
 use super::Tracked;
 
-/// A time at which the tag was somewhere.
+/// A time at which a position is estimated.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Knot {
-    /// Which part of the recording.
+    /// The index of the part of the recording.
     pub(super) part: usize,
-    /// Where to begin, m; in the plane the height is known.
+    /// The initial position, m; in the plane the height is known.
     pub(super) begin: [f64; 3],
-    /// What the tracker said.
+    /// The tracker's estimate.
     pub(super) epoch: Epoch,
 }
 
-/// A range, freed of what its anchor is known to measure too long.
+/// A range without the known bias of its anchor.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Measured {
-    /// When.
+    /// The index of the knot.
     pub(super) knot: usize,
-    /// The anchor's place in the list.
+    /// The index of the anchor in the list.
     pub(super) anchor: usize,
-    /// How long, m.
+    /// The range, m.
     pub(super) metres: f64,
 }
 
-/// All of them, in the order of time, part by part.
+/// All knots and ranges, in the order of time, part by part.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Knots {
     pub(super) points: Vec<Knot>,
     pub(super) measured: Vec<Measured>,
-    /// How many parts there are.
+    /// The number of parts.
     pub(super) parts: usize,
-    /// Whether the tag was put down.
+    /// Whether the tag was put down, and did not move.
     pub(super) is_static: bool,
 }
 
-/// The least share that is believed: with as many anchors as dimensions nothing is left over.
+/// The lower limit of the share of errors left in the residuals: with as many anchors as dimensions nothing would be
+/// left.
 const LEAST_LEFT_OVER: f64 = 0.25;
 
 impl Knots {
-    /// A tag that moves has a knot an epoch; one that was put down has one a part. None if the tracker never found it.
+    /// Collects the knots: one per epoch for a tag that moves, one per part for a tag that was put down. `None` if the
+    /// tracker never found it.
     pub(super) fn new(setup: &Setup, parts: &[Tracked<'_>], is_static: bool) -> Option<Self> {
         let mut all = Self { parts: parts.len(), is_static, ..Self::default() };
         for (part, Tracked { events, trace }) in parts.iter().enumerate() {
             let mut found = trace.epochs.iter().filter_map(|epoch| epoch.position);
             let begin = if is_static { found.next_back() } else { found.next() };
             let Some(mut begin) = begin else { continue };
-            // Of every range, in order, what became of it, and of every end of an epoch.
+            // The outcome of every range, in order, and of every end of an epoch.
             let (mut ranges, mut epochs) = (trace.ranges.iter(), trace.epochs.iter());
             for event in *events {
                 match event {
@@ -75,9 +77,9 @@ impl Knots {
         (!all.points.is_empty()).then_some(all)
     }
 
-    /// The share of errors that last which positions in so many dimensions leave in the residuals of ranges. A place is found
-    /// from as many errors as anchors are heard there, and fits to as many as it has dimensions. A tag that moves cannot
-    /// follow them: nearly all are left.
+    /// The share of lasting errors that remains in the residuals of ranges with positions in this many dimensions. A
+    /// place is found from as many errors as anchors are heard there, and adapts to as many as it has dimensions. A tag
+    /// that moves cannot follow them: nearly all remain.
     pub(super) fn left_over(&self, dimensions: usize) -> f64 {
         if !self.is_static {
             return 1.0;
@@ -89,8 +91,8 @@ impl Knots {
         (1.0 - dimensions as f64 / at_a_place).max(LEAST_LEFT_OVER)
     }
 
-    /// Keeps a range of the knot to come, unless the tracker refused it: as no range, as one that came too late, or as one
-    /// that it had already. One that it weighed and left out may be of use.
+    /// Keeps a range for the next knot, unless the tracker rejected it as invalid, as late, or as a repetition. One
+    /// that it weighed and left out may be of use.
     fn take(&mut self, setup: &Setup, range: Option<&(Range, Reception)>) {
         let Some((range, reception)) = range else { return };
         if reception.taken || reception.innovation.is_some() {
@@ -111,13 +113,13 @@ mod tests {
         let rows = (0..60).map(|index: i64| {
             let anchor = (index % 3) as usize;
             let metres = (ANCHORS[anchor][0] - 2.0).hypot(ANCHORS[anchor][1] - 1.0);
-            // One is no number, and one comes more than a second late.
+            // One is `NaN`, and one comes more than a second late.
             let range = Some(if index == 30 { f64::NAN } else { metres });
             let time_us = if index == 40 { 0 } else { index / 3 * 100_000 };
             RangeRow { time_us, anchor, range }
         });
         let events = Sensors::ranges(rows.collect()).events();
-        // Not the tracker for any setup: then all trackers there are would be compiled for this test.
+        // The tracker for a setup of any kind is avoided here: all trackers would be compiled for this test.
         let mut tracker = build_changed(setup, |_| {}).unwrap();
         let trace = Trace::by(tracker.as_mut(), setup, &events);
         (events, trace)

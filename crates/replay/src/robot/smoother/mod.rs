@@ -1,9 +1,10 @@
-//! The whole recording at once: where a tag was, given what was measured before and after.
+//! Smoothing of a whole recording: the positions of a tag given the measurements before and after.
 //!
-//! A fixed-interval smoother in the form of nonlinear least squares (Bell, *The iterated Kalman smoother as a Gauss–Newton
-//! method*, 1994). Ranges and motion have the tracker's models, but for a velocity that decays more slowly; each anchor's constant error is a parameter of the whole
-//! run, and so are the turns' gain and drift of a robot on wheels. Ranges are weighed as Student's distribution has it,
-//! with a heavier tail where they are too long; how large their noise is, and how long it lasts, is estimated.
+//! A fixed-interval smoother in the form of nonlinear least squares (Bell, *The iterated Kalman smoother as a
+//! Gauss–Newton method*, 1994). Ranges and motion have the tracker's models, except for a velocity that decays more
+//! slowly; each anchor's constant error is a parameter of the whole run, and so are the gain and drift of the turns of
+//! a robot on wheels. Ranges are weighted by Student's distribution, with a heavier tail for those that are too long;
+//! the size of their noise, and how long it lasts, are estimated.
 
 mod free;
 mod knots;
@@ -21,29 +22,29 @@ use self::wheels::Driven;
 use super::{Dimensions, Epoch, Event, Setup, Trace};
 use crate::metrics::rms;
 
-/// A part of a recording, and what a tracker made of it, from which the smoother begins.
+/// A part of a recording with its track, from which the smoother begins.
 #[derive(Debug, Clone, Copy)]
 pub struct Tracked<'a> {
-    /// What the sensors said.
+    /// The events of the sensors.
     pub events: &'a [Event],
-    /// Where the tracker found the tag, and what became of every range.
+    /// The tracker's positions, and the outcome of every range.
     pub trace: &'a Trace,
 }
 
-/// What a smoother made of a recording.
+/// The result of smoothing a recording.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Smoothed {
-    /// Of each part: of a tag that moves, its trace's epochs; of one that was put down, a single one; none of a part in which
-    /// the tracker never found it.
+    /// The epochs of each part: for a tag that moves, those of its trace; for one that was put down, a single one; none
+    /// for a part in which the tracker never found it.
     pub parts: Vec<Vec<Epoch>>,
-    /// What each anchor measures too long, m, beyond what was known beforehand and what all of them do, with its standard
-    /// deviation, m.
+    /// The bias of each anchor, m, beyond what was known beforehand and the common bias, with its standard deviation,
+    /// m.
     pub biases: Vec<[f64; 2]>,
-    /// What all of them measure too long, m, and what more in 10 m of distance, m, each with its standard deviation.
+    /// The bias common to all anchors, m, and its increase over 10 m of distance, m, each with its standard deviation.
     pub common: [[f64; 2]; 2],
 }
 
-/// Why a recording is not smoothed.
+/// Why a recording cannot be smoothed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unsmoothed {
@@ -59,27 +60,27 @@ pub enum Unsmoothed {
     /// There are more epochs than are smoothed together.
     #[error("it has more than {MOST_KNOTS} epochs")]
     TooLong,
-    /// What came out is less certain than the tracker's positions, or the tracker tells no standard deviation.
+    /// The result is less certain than the tracker's positions, or the tracker has no standard deviations.
     #[error("it would be less certain than the tracker is")]
     LessCertain,
-    /// The anchors are as few as can tell a position, and the way does not tell what all of them measure too long.
+    /// There are only just enough anchors for a position, and the track does not tell their common bias.
     #[error("so few anchors do not tell what all of them measure too long")]
     CommonBias,
-    /// What came out contradicts the tracker.
+    /// The result contradicts the tracker.
     #[error("it would contradict the tracker by more than twice its standard deviation")]
     Contradicts,
 }
 
-/// So many epochs are smoothed together, in about 250 MB with the most anchors.
+/// The largest number of epochs that are smoothed together, in about 250 MB with the most anchors.
 const MOST_KNOTS: usize = 50_000;
-/// By how many of the tracker's standard deviations the smoothed positions may differ from the tracker's, root mean
-/// square.
+/// The largest root mean square difference between smoothed and tracked positions, in the tracker's standard
+/// deviations.
 const MOST_SIGMAS: f64 = 2.0;
 
-/// Smooths the parts of a recording together. A static recording is one place a part; else the tag moves.
+/// Smooths the parts of a recording together. In a static recording each part has one place; otherwise the tag moves.
 ///
 /// # Errors
-/// [`Unsmoothed`]: it does not pay, or cannot be relied upon.
+/// [`Unsmoothed`] if smoothing brings no gain, or its result cannot be relied upon.
 pub fn smooth(
     setup: &Setup,
     parts: &[Tracked<'_>],
@@ -98,7 +99,7 @@ pub fn smooth(
                 .solve()
         }
         Dimensions::Two if setup.is_wheeled() && !is_static => {
-            // To which side turns are counted: what is more probable.
+            // The sign of turns is the more probable one.
             let to_a_side = [1.0, -1.0].map(|side| {
                 let motion = Driven::new(parts, &knots, side);
                 Problem::<4, 2, _>::new(setup, &config, &knots, motion).solve()
@@ -127,12 +128,12 @@ pub fn smooth(
     accepted(solved, &knots)
 }
 
-/// Of as few anchors as can tell a position, the way that the tag goes has told what all measure too long if it is known to this
-/// share of what was known before: of two recordings of three anchors one has a quarter of it and is better for it, one a half and
-/// is worse.
+/// The share of its prior standard deviation to which the common bias must be known, from the track, with only just
+/// enough anchors for a position: of two recordings of three anchors, one has a quarter of it and is better for it, one
+/// a half and is worse.
 const TOLD: f64 = 0.4;
 
-/// The result, if it is worth more than the tracker's and agrees with it, at most epochs.
+/// The result, if at most epochs it is more certain than the tracker's and agrees with it.
 fn accepted(solved: Solved, knots: &Knots) -> Result<Smoothed, Unsmoothed> {
     let (mut certain, mut moved) = (Vec::new(), Vec::new());
     for (knot, epoch) in knots.points.iter().zip(&solved.epochs) {

@@ -1,13 +1,14 @@
-//! The noise of each anchor's ranges: how large it is, and how long it lasts.
+//! The noise of each anchor's ranges: its size, and how long it lasts.
 
 use super::knots::{Knots, Measured};
 
-/// Degrees of freedom of Student's distribution for a range that is too long, and for one that is too short. Obstacles
-/// lengthen: the fewer, the less such a range counts.
+/// The degrees of freedom of Student's distribution for a range that is too long, and for one that is too short.
+/// Obstacles lengthen ranges: the fewer the degrees of freedom, the less such a range counts.
 const FREEDOM: [f64; 2] = [2.0, 5.0];
-/// No scale is smaller, m: a reflection nearby is as much.
+/// The smallest scale of the noise, m: a nearby reflection causes as much.
 const LEAST_SIGMA: f64 = 0.05;
-/// Errors that last are looked for in so long, µs, or in the whole stay of a tag that is put down.
+/// The length of the blocks in which lasting errors are searched for, µs; for a tag that was put down, it is the whole
+/// stay.
 const BLOCK_US: i64 = 5_000_000;
 
 /// The noise of all anchors.
@@ -19,36 +20,36 @@ pub(super) struct Noise {
 /// The noise of an anchor.
 #[derive(Debug, Clone, Copy)]
 struct Link {
-    /// Scale, m.
+    /// The scale of the noise, m.
     sigma: f64,
-    /// As many ranges as this are worth one whose error is its own: 1 and above.
+    /// The number of ranges that are worth one with an independent error: 1 or more.
     inflation: f64,
 }
 
-/// What a range counts.
+/// The weight of a range.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Weighed {
     /// The inverse of its variance, 1/m².
     pub(super) information: f64,
-    /// −2 ln of its probability, but for a constant.
+    /// −2 ln of its probability, up to a constant.
     pub(super) cost: f64,
 }
 
 impl Noise {
-    /// Of so many anchors with this standard deviation, m.
+    /// The noise of the given number of anchors, each with this standard deviation, m.
     pub(super) fn new(anchors: usize, sigma: f64) -> Self {
         Self { links: vec![Link { sigma, inflation: 1.0 }; anchors] }
     }
 
-    /// Takes each range's error for its own: so that two solutions can be compared of which each found errors to last as long as
-    /// it likes.
+    /// Treats each range's error as independent, so that two solutions can be compared for which lasting errors were
+    /// estimated differently.
     pub(super) fn forget_lasting(&mut self) {
         for link in &mut self.links {
             link.inflation = 1.0;
         }
     }
 
-    /// What a range counts that is expected to be longer by `residual`, m, than it was measured.
+    /// The weight of a range that is predicted longer than it was measured by `residual`, m.
     pub(super) fn weigh(&self, anchor: usize, residual: f64) -> Weighed {
         let Link { sigma, inflation } = self.links[anchor];
         let (freedom, square) = (freedom(residual), (residual / sigma).powi(2));
@@ -59,13 +60,13 @@ impl Noise {
         }
     }
 
-    /// Learns from the residuals (m) of all ranges, and the variances that the positions add to them (m²); whether anything
-    /// changed by more than a hundredth.
+    /// Learns from the residuals (m) of all ranges, and the variances that the positions add to them (m²); returns
+    /// whether anything changed by more than a hundredth.
     ///
-    /// The scale as expectation and maximisation have it (Lange, Little and Taylor 1989). How long errors last from the means
-    /// over five seconds, which vary the more: of n ranges with errors of their own, the squared sum is n times the
-    /// mean square. An error that lasts says nothing new with the next range. Of such errors a share is `left_over` in
-    /// the residuals.
+    /// The scale is that of expectation maximisation (Lange, Little and Taylor 1989). How long errors last follows from
+    /// the means over five seconds, whose variance grows with it: for n ranges with independent errors, the squared sum
+    /// is n times the mean square. A lasting error tells nothing new with the next range. Of such errors a share
+    /// `left_over` is in the residuals.
     pub(super) fn learn(
         &mut self,
         knots: &Knots,
@@ -88,7 +89,7 @@ impl Noise {
         let mut changed = false;
         for (link, sum) in self.links.iter_mut().zip(&sums).filter(|(_, sum)| sum.count > 0.0) {
             let sigma = (sum.squares / sum.count).sqrt().max(LEAST_SIGMA);
-            // An anchor that positions follow shows less of its errors than it has.
+            // An anchor that positions follow shows less of its errors than there is.
             let inflation = inflation(sum).max(mean);
             let moved = |before: f64, now: f64| (now - before).abs() > 0.01 * before;
             changed |= moved(link.sigma, sigma) || moved(link.inflation, inflation);
@@ -102,16 +103,16 @@ fn freedom(residual: f64) -> f64 {
     FREEDOM[usize::from(residual >= 0.0)]
 }
 
-/// What is summed over the ranges of an anchor.
+/// The sums over the ranges of an anchor.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sum {
     count: f64,
-    /// Weighed squares, m².
+    /// Weighted squares, m².
     squares: f64,
-    /// The block at hand, and the sum of its weighed residuals, m.
+    /// The current block, and (`of_block`) the sum of its weighted residuals, m.
     block: (usize, i64),
     of_block: f64,
-    /// Over all blocks: squared sums, and sums of squares, m².
+    /// Over all blocks, the squared sums, and (`single_squares`) the sums of squares, m².
     squared_sums: f64,
     single_squares: f64,
 }
@@ -179,7 +180,7 @@ mod tests {
     fn the_scale_and_how_long_errors_last_are_found() {
         let knots = knots(5000);
         let mut noise = Noise::new(2, 1.0);
-        // The first anchor's errors are its own, to and fro; the second's last for five seconds.
+        // The first anchor's errors are independent; the second's last for five seconds.
         let residual = |measured: &Measured| {
             let step = if measured.anchor == 0 { measured.knot } else { measured.knot / 50 };
             let draw = (step as f64 * 12.9898).sin() * 43758.5453;
@@ -190,7 +191,8 @@ mod tests {
         for link in &noise.links {
             assert!((0.1..0.3).contains(&link.sigma), "{noise:?}");
         }
-        // What lasts is one error in fifty ranges; and nobody's last shorter than the mean.
+        // A lasting error counts as one in fifty ranges; and no anchor's errors are assumed to last shorter than the
+        // mean.
         let [own, lasting] = [noise.links[0].inflation, noise.links[1].inflation];
         assert!((40.0..60.0).contains(&lasting) && (20.0..30.0).contains(&own), "{noise:?}");
     }

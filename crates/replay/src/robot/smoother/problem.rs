@@ -1,4 +1,4 @@
-//! The least squares of a recording, and how they are solved.
+//! The least-squares problem of a recording, and its solution.
 
 use kestirim_uwb_tracker::Config;
 use nalgebra::{DVector, SVector};
@@ -9,20 +9,20 @@ use super::knots::{Knot, Knots, Measured};
 use super::noise::Noise;
 use crate::chain::{Chain, Solution, Tie, Want};
 
-/// How a tag moves from one knot to the next.
+/// A model of the motion of a tag from one knot to the next.
 pub(super) trait Motion<const N: usize> {
-    /// A state to begin with.
+    /// The initial state at a knot.
     fn begin(&self, knot: &Knot) -> SVector<f64, N>;
 
-    /// Inverse variances of every part's first state beforehand, about zero.
+    /// The prior inverse variances of every part's first state, about zero.
     fn prior(&self) -> SVector<f64, N>;
 
-    /// Parameters of the motion: what they are about beforehand, and by what standard deviation.
+    /// The prior of each parameter of the motion: mean and standard deviation.
     fn parameters(&self) -> Vec<[f64; 2]> {
         Vec::new()
     }
 
-    /// What ties a knot to the one that comes after an interval (s), with the motion's own parameters.
+    /// The tie between a knot and the next one after an interval (s), given the motion's own parameters.
     fn tie(
         &self,
         index: usize,
@@ -32,26 +32,29 @@ pub(super) trait Motion<const N: usize> {
     ) -> Tie<N, N>;
 }
 
-/// Noise is learnt so often at most, and positions are improved so often with each.
+/// The largest number of rounds in which noise is learnt; `STEPS` is the number of steps of positions in each.
 const ROUNDS: usize = 20;
 const STEPS: usize = 2;
-/// In the first rounds anchors have no errors of their own: positions are near before those are looked for.
+/// The number of first rounds in which anchors have no errors of their own: positions are close before those are
+/// estimated.
 const ROUGH_ROUNDS: usize = 4;
-/// Anchors' own errors by those that the tracker considers. It expects as much again where a tag stands: one constant lies
-/// between.
+/// The size of anchors' own errors relative to that in the tracker. The tracker expects as much again where a tag
+/// stands: one constant lies between.
 const BIAS_SHARE: f64 = 1.2;
-/// A step of any position that is shorter ends the improving, m.
+/// The step of the farthest position below which the iteration ends, m.
 const SMALL_STEP: f64 = 1e-3;
-/// With the noise as it was found, positions are improved so often, until none moves by more than this, m.
+/// The largest number of steps with the final noise; afterwards no position may move by more than `SETTLED`, m.
 const LAST_STEPS: usize = 100;
 const SETTLED: f64 = 0.01;
-/// A step that makes the cost larger is halved, down to this share, below which there is none.
+/// The smallest share of a step: a step that increases the cost is halved as long as its share is above this, and
+/// otherwise not taken.
 const LEAST_SHARE: f64 = 0.1;
-/// Inverse variance of every part's first position about where it is, 1/m²: so that equations always have a solution.
+/// The inverse variance of every part's first position about its current value, 1/m², which ensures that the equations
+/// have a solution.
 const HARDLY: f64 = 1e-6;
 
-/// Unknowns of a tag in D dimensions, N of each knot; and as parameters each anchor's own error, the error common to
-/// all, its excess in 10 m, and those of the motion.
+/// The unknowns of a tag in D dimensions: N for each knot, and as parameters each anchor's own error, the common error,
+/// its excess in 10 m, and those of the motion.
 #[derive(Debug)]
 pub(super) struct Problem<'a, const N: usize, const D: usize, M> {
     setup: &'a Setup,
@@ -59,31 +62,31 @@ pub(super) struct Problem<'a, const N: usize, const D: usize, M> {
     motion: M,
     states: Vec<SVector<f64, N>>,
     parameters: DVector<f64>,
-    /// What the parameters are about beforehand, and by what standard deviation.
+    /// The prior mean and standard deviation of each parameter.
     known: Vec<[f64; 2]>,
     noise: Noise,
 }
 
-/// A solution.
+/// The solution of a problem.
 #[derive(Debug, Clone)]
 pub(super) struct Solved {
-    /// One of each knot.
+    /// The epochs, one for each knot.
     pub(super) epochs: Vec<Epoch>,
-    /// What each anchor measures too long beyond all others, with its standard deviation, m.
+    /// The bias of each anchor beyond the common one, with its standard deviation, m.
     pub(super) biases: Vec<[f64; 2]>,
-    /// What all do, and what more in 10 m, m, each with its standard deviation.
+    /// The common bias, and its increase over 10 m, m, each with its standard deviation.
     pub(super) common: [[f64; 2]; 2],
-    /// −2 ln of how probable all is if each range's error is its own, but for a constant.
+    /// −2 ln of the probability of everything if each range's error is independent, up to a constant.
     pub(super) cost: f64,
 }
 
-/// A range as it is expected.
+/// The prediction of a range.
 struct Expected<const N: usize> {
-    /// By how much longer than it was measured, m.
+    /// The predicted minus the measured range, m.
     residual: f64,
-    /// Derivatives by the state.
+    /// Derivatives with respect to the state.
     row: SVector<f64, N>,
-    /// Derivatives by parameters.
+    /// Derivatives with respect to parameters.
     by: [(usize, f64); 3],
 }
 
@@ -92,7 +95,7 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
         let anchors = setup.anchors::<f64>();
         let scaled = config.of_place(&anchors);
         let common = match setup.biases {
-            // What is left of the common error is one of each anchor.
+            // The remaining common error is of the size of one anchor's.
             Some(_) => [config.bias_sigma; 2],
             None => config.common_sigmas(&anchors),
         };
@@ -110,7 +113,7 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
         }
     }
 
-    /// The most probable track.
+    /// Solves for the most probable track.
     ///
     /// # Errors
     /// [`Unsmoothed::NotObservable`] or [`Unsmoothed::NotConverged`].
@@ -158,14 +161,14 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
         Chain::new(self.knots.points.len(), self.known.len())
     }
 
-    /// The covariances where the unknowns are now.
+    /// The covariances at the current unknowns.
     fn certainty(&self) -> Option<Solution<N>> {
         let mut chain = self.chain();
         self.equations(Some(&mut chain));
         chain.solve(Want::Covariances)
     }
 
-    /// Takes a step, and says how far the farthest position has moved, m.
+    /// Takes a step; returns the distance that the farthest position has moved, m.
     fn improve(&mut self) -> Option<f64> {
         let mut chain = self.chain();
         let cost = self.equations(Some(&mut chain));
@@ -182,7 +185,7 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
             }
             share *= 0.5;
         }
-        // No step makes it better.
+        // No step reduces the cost.
         (self.states, self.parameters) = (states, parameters);
         Some(0.0)
     }
@@ -204,7 +207,7 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
         }
     }
 
-    /// The cost where the unknowns are now; adds the normal equations there, if they are wanted.
+    /// The cost at the current unknowns; adds the normal equations to `chain`, if given.
     fn equations(&self, mut chain: Option<&mut Chain<N>>) -> f64 {
         let (knots, count) = (&self.knots.points, self.setup.anchors.len() + 2);
         let mut cost = 0.0;
@@ -246,7 +249,7 @@ impl<'a, const N: usize, const D: usize, M: Motion<N>> Problem<'a, N, D, M> {
         cost
     }
 
-    /// What is known of a part's first state beforehand; its cost.
+    /// Adds the prior of a part's first state; returns its cost.
     fn begin(
         &self,
         mut chain: Option<&mut Chain<N>>,

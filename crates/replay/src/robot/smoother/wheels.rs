@@ -1,4 +1,4 @@
-//! Motion of a robot on wheels, with its heading and what they count wrongly.
+//! The motion of a robot on wheels, with its heading and the errors of the wheels.
 
 use kestirim_uwb_tracker::wheel_noise as noise;
 use nalgebra::{DVector, SMatrix, SVector};
@@ -9,30 +9,31 @@ use super::knots::{Knot, Knots};
 use super::problem::Motion;
 use crate::chain::Tie;
 
-/// Position and (c, s) = k (cos θ, sin θ) of the wheels' scale k and the heading θ: what they count is linear in that, so
-/// that nothing need be known of the heading to begin with. The turns' gain and drift (rad/s) are parameters.
+/// The motion model, with position and (c, s) = k (cos θ, sin θ) for the wheels' scale k and the heading θ: the wheels'
+/// motion is linear in those, so that nothing need be known of the heading to begin with. The gain and drift (rad/s) of
+/// the turns are parameters.
 #[derive(Debug, Clone)]
 pub(super) struct Driven {
-    /// What the wheels did from each knot to the next.
+    /// The steps of the wheels from each knot to the next.
     steps: Vec<Vec<Step>>,
-    /// To which side turns are counted: 1 or −1.
+    /// The sign of turns: 1 or −1.
     side: f64,
 }
 
-/// What the wheels did.
+/// A step of the wheels.
 #[derive(Debug, Clone, Copy)]
 enum Step {
-    /// They counted a way, m, and a turn, rad, in a time, s.
+    /// The wheels counted a way, m, and a turn, rad, in a time, s.
     Counted { way: f64, turn: f64, interval: f64 },
-    /// They said nothing for a time, s, with this speed before it, m/s.
+    /// The wheels were silent for a time, s, with this speed before it, m/s.
     Unknown { speed: f64, interval: f64 },
 }
 
-/// Variances that any step adds, of a coordinate, m², and of c and s: so that no tie is rigid.
+/// The variances that any step adds, of a coordinate, m², and of c and s, so that no tie is rigid.
 const LEAST_NOISE: [f64; 2] = [1e-8, 1e-10];
-/// Variance that any time adds to the heading, rad²/s: the drift is not quite constant.
+/// The rate at which the variance of the heading grows, rad²/s: the drift is not quite constant.
 const HEADING_WALK: f64 = 1e-8;
-/// Standard deviation of the drift beforehand, rad/s.
+/// The prior standard deviation of the drift, rad/s.
 const DRIFT_SIGMA: f64 = 0.01 * noise::DRIFT_SIGMA;
 
 impl Driven {
@@ -60,7 +61,7 @@ impl Driven {
     }
 }
 
-/// What the wheels did between two times. A sample says what they did since the one before it.
+/// The steps of the wheels between two times. A sample tells the motion since the previous one.
 fn steps(samples: &[Wheels], [begin_us, end_us]: [i64; 2]) -> Vec<Step> {
     let mut steps = Vec::new();
     let (mut now_us, mut next) =
@@ -81,13 +82,13 @@ fn steps(samples: &[Wheels], [begin_us, end_us]: [i64; 2]) -> Vec<Step> {
     steps
 }
 
-/// Wheels' steps put together, in the axes of the first.
+/// The sum of several steps, in the axes of the first.
 #[derive(Debug, Clone, Copy, Default)]
 struct Way {
-    /// Ahead and left, m, and their derivatives by gain and drift.
+    /// The motion ahead and to the left, m, and (`by`) its derivatives with respect to gain and drift.
     moved: [f64; 2],
     by: [[f64; 2]; 2],
-    /// The turns as counted, rad, and how long they were counted, s.
+    /// The turns as counted, rad, and (`elapsed`) the time for which they were counted, s.
     turned: f64,
     elapsed: f64,
     /// Variances of a coordinate, m², and of the heading.
@@ -134,7 +135,7 @@ impl Motion<4> for Driven {
     }
 
     fn prior(&self) -> SVector<f64, 4> {
-        // A scale of one or so, in any direction.
+        // A scale of about one, in any direction.
         SVector::from([0.0, 0.0, 1.0, 1.0])
     }
 

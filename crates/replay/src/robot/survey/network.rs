@@ -1,18 +1,19 @@
-//! Shapes of a network, and how well they fit.
+//! Shapes of a network of anchors, and their fit.
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
 use super::{DIFFERENT, Pair};
 
-/// Starts that are tried: as many local minima are usual as there are anchors beside the plane of others.
+/// The number of starts that are tried: usually there are as many local minima as there are anchors off the plane of
+/// the others.
 const STARTS: usize = 60;
 const MOST_STEPS: usize = 200;
-/// A step that changes the cost by less ends the search, in parts of it.
+/// The relative change of the cost below which the search ends.
 const SETTLED: f64 = 1e-9;
-/// Of the largest eigenvalue of the normal equations; below it, a direction in which nothing is known.
+/// The share of the largest eigenvalue of the normal equations below which nothing is known in a direction.
 const NEGLIGIBLE: f64 = 1e-10;
 
-/// Ranges between anchors, and what they err by.
+/// The ranges between anchors, and their standard deviation.
 #[derive(Debug)]
 pub(super) struct Network<'a> {
     pub(super) anchors: usize,
@@ -22,7 +23,7 @@ pub(super) struct Network<'a> {
     pub(super) sigma: f64,
 }
 
-/// Places of anchors, m, and what is left of the ranges: the sum of ln (1 + (r/σ)²)/2.
+/// The places of anchors, m, and the cost of the residuals r of the ranges: the sum of ln (1 + (r/σ)²)/2.
 #[derive(Debug, Clone)]
 pub(super) struct Shape {
     pub(super) places: Vec<[f64; 3]>,
@@ -38,7 +39,8 @@ impl Shape {
         Vector3::from(self.places[anchor])
     }
 
-    /// The same with the first anchor at the origin, the second on the x axis, and so on, each at a positive coordinate.
+    /// The shape turned so that the first anchor is at the origin, the second on the x axis, and so on, each at a
+    /// positive coordinate.
     pub(super) fn turned(&self, dimensions: usize) -> Self {
         const BESIDE: f64 = 1e-6;
         let origin = self.place(0);
@@ -54,7 +56,7 @@ impl Shape {
             let offset = self.place(anchor) - origin;
             std::array::from_fn(|axis| {
                 let along = axes.get(axis).map_or(0.0, |axis| axis.dot(&offset));
-                // What is zero by the choice of axes is zero.
+                // Coordinates that are zero by the choice of axes are set to zero.
                 if anchor <= axis { 0.0 } else { along }
             })
         });
@@ -63,24 +65,24 @@ impl Shape {
 }
 
 impl Network<'_> {
-    /// Coordinates but for the frame's.
+    /// The number of coordinates without those of the frame.
     pub(super) fn unknowns(&self) -> usize {
         let d = self.dimensions;
         (self.anchors * d).saturating_sub(d * (d + 1) / 2)
     }
 
-    /// Anchors with fewer ranges than dimensions.
+    /// The anchors with fewer ranges than dimensions.
     pub(super) fn loose(&self) -> Vec<usize> {
         let count = |anchor| self.pairs.iter().filter(|it| it.anchors.contains(&anchor)).count();
         (0..self.anchors).filter(|&anchor| count(anchor) < self.dimensions).collect()
     }
 
-    /// Shapes that fit locally, the best first.
+    /// The locally best shapes, the best first.
     pub(super) fn shapes(&self) -> Vec<Shape> {
         let mut shapes: Vec<_> =
             (0..STARTS).map(|start| self.settled(&self.start(start))).collect();
         shapes.sort_by(|one, other| one.cost.total_cmp(&other.cost));
-        // Each anchor on the other side of the others, which the starts may have missed.
+        // Each anchor is also tried on the other side of the others, which the starts may have missed.
         if let Some(best) = shapes.first().cloned() {
             let mirrored = (0..self.anchors).filter_map(|anchor| self.mirrored(&best, anchor));
             shapes.extend(mirrored.map(|shape| self.settled(&shape)).collect::<Vec<_>>());
@@ -89,7 +91,7 @@ impl Network<'_> {
         shapes
     }
 
-    /// Places anywhere within the longest range, the same in every run.
+    /// Random places within the longest range, the same in every run.
     fn start(&self, number: usize) -> Shape {
         let longest = self.pairs.iter().map(|pair| pair.metres).fold(1.0, f64::max);
         let mut state = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(number as u64 + 1);
@@ -108,7 +110,7 @@ impl Network<'_> {
         Shape { places: (0..self.anchors).map(|_| place()).collect(), cost: f64::INFINITY }
     }
 
-    /// The same with one anchor on the other side of the plane, or line, that those lie along to which it has ranges.
+    /// The shape with one anchor mirrored at the plane, or line, along which the anchors lie to which it has ranges.
     fn mirrored(&self, shape: &Shape, anchor: usize) -> Option<Shape> {
         let near: Vec<_> = self
             .pairs
@@ -131,7 +133,7 @@ impl Network<'_> {
         Some(mirrored)
     }
 
-    /// Moved to where the ranges fit best nearby: Levenberg's and Marquardt's steps, weights renewed in each.
+    /// The shape moved to the best fit nearby, by Levenberg–Marquardt steps with weights renewed in each.
     pub(super) fn settled(&self, shape: &Shape) -> Shape {
         let mut best = Shape { cost: self.cost(&shape.places), ..shape.clone() };
         let mut damping = 1e-2;
@@ -175,7 +177,7 @@ impl Network<'_> {
         self.pairs.iter().map(square).sum()
     }
 
-    /// Normal equations of all coordinates, weighted, and the right-hand side.
+    /// The weighted normal equations of all coordinates, and their right-hand side.
     fn equations(&self, shape: &Shape) -> (DMatrix<f64>, DVector<f64>) {
         let (d, size) = (self.dimensions, self.anchors * self.dimensions);
         let (mut normal, mut gradient) = (DMatrix::zeros(size, size), DVector::zeros(size));
@@ -201,7 +203,7 @@ impl Network<'_> {
         (normal, gradient)
     }
 
-    /// Standard deviation of the ranges by what is left of those that fit, of which so many are to spare.
+    /// The standard deviation of the ranges from the residuals of those that fit, with `spare` redundant ones.
     pub(super) fn spread(&self, shape: &Shape, spare: usize) -> f64 {
         let mut left: Vec<f64> = self
             .pairs
@@ -209,13 +211,13 @@ impl Network<'_> {
             .map(|pair| (pair.metres - shape.distance(pair.anchors)).abs())
             .collect();
         left.sort_by(f64::total_cmp);
-        // One in ten may be anything.
+        // One in ten may have any error.
         let kept = left.len() - (left.len() / 10).min(spare.saturating_sub(1));
         let squares: f64 = left.iter().take(kept).map(|residual| residual * residual).sum();
         (squares / (kept + spare - left.len()).max(1) as f64).sqrt()
     }
 
-    /// Standard deviations of all coordinates about the centre, m; none if more than the frame is open.
+    /// The standard deviations of all coordinates about the centre, m; `None` if more than the frame is undetermined.
     pub(super) fn sigmas(&self, shape: &Shape) -> Option<Vec<[f64; 3]>> {
         let d = self.dimensions;
         let eigen = self.equations(shape).0.symmetric_eigen();
@@ -239,7 +241,7 @@ impl Network<'_> {
         Some((0..self.anchors).map(of).collect())
     }
 
-    /// The anchors that stand elsewhere in another shape: fewest that explain how its distances differ.
+    /// The anchors with another place in a different shape: the fewest that explain how its distances differ.
     pub(super) fn moved(&self, best: &Shape, other: &Shape) -> Vec<usize> {
         let n = self.anchors;
         let differs =

@@ -1,4 +1,4 @@
-//! `kestirim_uwb_tracker::EpochSolver` behind the trackers' face.
+//! `kestirim_uwb_tracker::EpochSolver` behind the trackers' interface.
 
 use kestirim_scalar::Scalar;
 use kestirim_uwb_ranging::Solver;
@@ -8,7 +8,7 @@ use nalgebra::SVector;
 use super::{Follow, Reception, place, sample};
 use crate::robot::{Error, Event, MOST, Setup};
 
-/// The freshest range of each anchor, and the position that they make.
+/// A tracker that computes the position from the latest range of each anchor.
 #[derive(Debug)]
 pub(super) struct EachEpoch<T: Scalar, const D: usize> {
     solver: EpochSolver<T, MOST>,
@@ -17,10 +17,10 @@ pub(super) struct EachEpoch<T: Scalar, const D: usize> {
 }
 
 impl<T: Scalar, const D: usize> EachEpoch<T, D> {
-    /// Linear trilateration or nonlinear least squares.
+    /// A tracker with linear trilateration or nonlinear least squares.
     ///
     /// # Errors
-    /// [`Error::Anchors`] if these anchors will not do.
+    /// [`Error::Anchors`] if the anchors are unsuitable.
     pub(super) fn new(setup: &Setup, method: EpochMethod) -> Result<Self, Error> {
         let solver = Solver { room: setup.room(), ..Solver::new(T::from_f64(setup.height_m)) };
         let solver = EpochSolver::new(method, solver, &setup.anchors())?;
@@ -43,7 +43,7 @@ impl<T: Scalar, const D: usize> Follow for EachEpoch<T, D> {
                 self.position = self.solver.position(time_us, self.position).ok();
                 true
             }
-            // Of no use to it.
+            // Other events are not used.
             _ => true,
         };
         Reception::unweighed(taken)

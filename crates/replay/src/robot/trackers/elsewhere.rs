@@ -1,15 +1,15 @@
 //! Rooms far from the origin of their coordinates, such as those of a map.
 //!
-//! Single precision is too coarse there (3 cm at 500 km), and fixed point ends at 2 km: what is followed is followed
-//! about an origin nearby, in whole metres.
+//! Single precision is too coarse there (3 cm at 500 km), and fixed point ends at 2 km: tracking is therefore relative
+//! to an origin nearby, in whole metres.
 
 use super::{Follow, Reception};
 use crate::robot::{Event, Setup};
 
-/// Coordinates in the plane up to here are taken as they are, m: single precision tells 31 µm apart there.
+/// The largest coordinates in the plane that are used as they are, m: single precision resolves 31 µm there.
 const NEAR: f64 = 500.0;
 
-/// The origin nearby, m, if the anchors are far from their own.
+/// The nearby origin, m, if the anchors are far from their own.
 pub(super) fn origin(setup: &Setup) -> Option<[f64; 2]> {
     let is_far = setup.anchors.iter().any(|[x, y, _]| x.abs().max(y.abs()) > NEAR);
     let count = setup.anchors.len() as f64;
@@ -17,7 +17,7 @@ pub(super) fn origin(setup: &Setup) -> Option<[f64; 2]> {
     is_far.then(|| [0, 1].map(|axis| mean(axis).round()))
 }
 
-/// The same setup about this origin.
+/// The setup relative to this origin.
 pub(super) fn about(setup: &Setup, [x, y]: [f64; 2]) -> Setup {
     let mut near = setup.clone();
     for anchor in &mut near.anchors {
@@ -27,7 +27,7 @@ pub(super) fn about(setup: &Setup, [x, y]: [f64; 2]) -> Setup {
     near
 }
 
-/// A tracker about an origin nearby.
+/// A tracker relative to a nearby origin.
 #[derive(Debug)]
 pub(super) struct Elsewhere {
     pub(super) tracker: Box<dyn Follow>,

@@ -1,4 +1,4 @@
-//! `kestirim_uwb_tracker::DifferenceTracker` behind the trackers' face.
+//! `kestirim_uwb_tracker::DifferenceTracker` behind the trackers' interface.
 
 use kestirim_scalar::Scalar;
 use kestirim_uwb_tracker::{Config, DifferenceSample, DifferenceTracker};
@@ -8,13 +8,13 @@ use crate::robot::{Difference, Error, Event, MOST, Setup};
 use crate::stored::{behind, read};
 use crate::{Number, Stored};
 
-/// Takes in every difference by itself, N states with the clock; what it begins with is another tracker, for ranges, which
-/// is never asked once there is a difference.
+/// A tracker that processes every difference individually, with N states including the clock. Until the first
+/// difference, its answers are those of another tracker, for ranges.
 #[derive(Debug)]
 pub(super) struct Listening<T: Scalar, const D: usize, const N: usize> {
     ranges: Box<dyn Follow>,
     tracker: DifferenceTracker<T, D, N, MOST>,
-    /// Whether a difference came.
+    /// Whether a difference has come.
     listens: bool,
     /// Time of the last event, µs.
     now_us: u64,
@@ -25,7 +25,7 @@ impl<T: Scalar, const D: usize, const N: usize> Listening<T, D, N> {
     /// A tracker of differences among the anchors of a setup, beside one of ranges.
     ///
     /// # Errors
-    /// [`Error::Anchors`] if they will not do.
+    /// [`Error::Anchors`] if the anchors are unsuitable.
     pub(super) fn beside(
         ranges: Box<dyn Follow>,
         setup: &Setup,
@@ -92,7 +92,7 @@ impl<T: Number, const D: usize, const N: usize> Follow for Listening<T, D, N> {
     }
 
     fn snapshot(&self) -> Option<Vec<u8>> {
-        // Most tags never listen.
+        // Most tags never receive differences.
         let tracker = if self.listens { self.tracker.stored()? } else { Vec::new() };
         let ranges = self.ranges.snapshot()?;
         let numbers = [self.now_us, self.height_m.to_bits(), tracker.len() as u64];
@@ -103,7 +103,7 @@ impl<T: Number, const D: usize, const N: usize> Follow for Listening<T, D, N> {
         let ([now_us, height, length], rest) = read(snapshot)?;
         let (tracker, ranges) = rest.split_at_checked(usize::try_from(length).ok()?)?;
         let listens = !tracker.is_empty();
-        // What has listened is not as it was before.
+        // A tracker that has received differences cannot return to a state without them.
         if self.listens && !listens {
             return None;
         }

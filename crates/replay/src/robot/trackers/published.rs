@@ -1,4 +1,4 @@
-//! `kestirim_uwb_tracker::PublishedTracker` behind the trackers' face.
+//! `kestirim_uwb_tracker::PublishedTracker` behind the trackers' interface.
 
 use kestirim_scalar::Scalar;
 use kestirim_uwb_tracker::{Anchor, PublishedConfig, PublishedOutcome, PublishedTracker};
@@ -9,7 +9,7 @@ use crate::robot::{Error, Event, Setup};
 use crate::stored::{behind, read};
 use crate::{Number, Stored};
 
-/// Which noise the filter works with.
+/// The noise that the filter uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Noise {
     /// R and Q stay as they are: the plain filter.
@@ -18,17 +18,17 @@ pub enum Noise {
     Adapted,
 }
 
-/// How the filter begins.
+/// The start of the filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beginning {
-    /// Where; none begins at the first trilateration.
+    /// The initial position; `None` begins at the first trilateration.
     pub start: Option<[f64; 2]>,
-    /// With which noise.
+    /// The noise that the filter uses.
     pub noise: Noise,
 }
 
 impl Beginning {
-    /// As anyone has to: at the first trilateration.
+    /// A start at the first trilateration, as in practice.
     pub const HONEST: Self = Self { start: None, noise: Noise::Adapted };
 }
 
@@ -40,7 +40,7 @@ pub(super) struct Published<T: Scalar, const D: usize, const N: usize, const A: 
 }
 
 impl<T: Number, const D: usize, const N: usize> Published<T, D, N> {
-    /// The filter for as many anchors as there are.
+    /// Builds the filter for the number of anchors in the setup.
     ///
     /// # Errors
     /// [`Error::CountOfAnchors`] for fewer than three or more than eight.
@@ -93,11 +93,11 @@ impl<T: Number, const D: usize, const N: usize, const A: usize> Follow for Publi
                 }
                 set
             }
-            // What eq. 18 makes impossible is left out.
+            // An epoch that eq. 18 makes impossible is left out.
             Event::EpochEnd { .. } => {
                 !matches!(self.tracker.end_epoch(time_us), PublishedOutcome::Refused(_))
             }
-            // Of no use to it.
+            // Other events are not used.
             _ => true,
         };
         Reception::unweighed(taken)

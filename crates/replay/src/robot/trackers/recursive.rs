@@ -1,4 +1,4 @@
-//! `kestirim_uwb_tracker::Tracker` behind the trackers' face.
+//! `kestirim_uwb_tracker::Tracker` behind the trackers' interface.
 
 use kestirim_scalar::Scalar;
 use kestirim_uwb_tracker::{Config, InertialSample, OdometrySample, Tracker};
@@ -9,7 +9,7 @@ use crate::robot::{Error, Event, Inertial, MOST, Setup, TrackerKind, Wheels};
 use crate::stored::{behind, read};
 use crate::{Number, Stored};
 
-/// Takes in every measurement by itself.
+/// A tracker that processes every measurement individually.
 #[derive(Debug)]
 pub(super) struct Recursive<T: Scalar, const D: usize, const N: usize> {
     tracker: Tracker<T, D, N, MOST>,
@@ -24,7 +24,7 @@ impl<T: Scalar, const D: usize, const N: usize> Recursive<T, D, N> {
     /// A tracker for the anchors of a setup.
     ///
     /// # Errors
-    /// [`Error::Anchors`] if they will not do.
+    /// [`Error::Anchors`] if the anchors are unsuitable.
     pub(super) fn new(setup: &Setup, config: Config<T>) -> Result<Self, Error> {
         let config = Config { room: setup.room(), ..config };
         let tracker = Tracker::new(config, &setup.anchors())?;
@@ -65,7 +65,7 @@ impl<T: Number, const D: usize, const N: usize> Follow for Recursive<T, D, N> {
                 }
                 set
             }
-            // Of no use to it.
+            // These events are not used.
             Event::Difference(_) | Event::EpochEnd { .. } => true,
         };
         Reception::unweighed(taken)

@@ -1,4 +1,4 @@
-//! `kestirim_uwb_tracker::WheelTracker` behind the trackers' face.
+//! `kestirim_uwb_tracker::WheelTracker` behind the trackers' interface.
 
 use kestirim_scalar::Scalar;
 use kestirim_uwb_tracker::{Config, OdometrySample, WheelTracker};
@@ -6,7 +6,7 @@ use kestirim_uwb_tracker::{Config, OdometrySample, WheelTracker};
 use super::{Follow, Reception, bias_variance, place, sample, with_bias};
 use crate::robot::{Error, Event, MOST, Setup, Wheels};
 
-/// Is moved by the wheels, and takes in every range by itself.
+/// A tracker that is moved by the wheels, and processes every range individually.
 #[derive(Debug)]
 pub(super) struct Wheeled<T: Scalar> {
     tracker: WheelTracker<T, MOST>,
@@ -19,7 +19,7 @@ impl<T: Scalar> Wheeled<T> {
     /// A tracker for the anchors of a setup.
     ///
     /// # Errors
-    /// [`Error::Anchors`] if they will not do.
+    /// [`Error::Anchors`] if the anchors are unsuitable.
     pub(super) fn new(setup: &Setup, config: Config<T>) -> Result<Self, Error> {
         let config = Config { room: setup.room(), ..config };
         let tracker = WheelTracker::new(config, &setup.anchors())?;
@@ -46,7 +46,7 @@ impl<T: Scalar> Follow for Wheeled<T> {
                 }
                 set
             }
-            // Of no use to it.
+            // Other events are not used.
             _ => true,
         };
         Reception::unweighed(taken)

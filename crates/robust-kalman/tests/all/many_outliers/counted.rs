@@ -1,4 +1,5 @@
-//! A double whose operations are counted, so that a cost is a number and not a time.
+//! A double-precision number whose operations are counted, so that cost is a count instead of a
+//! time.
 
 use kestirim_scalar::Scalar;
 use num_traits::{One, Zero};
@@ -7,7 +8,7 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 
 thread_local!(static OPERATIONS: Cell<u64> = const { Cell::new(0) });
 
-/// Operations of this thread while `work` runs.
+/// The number of operations of this thread while `work` runs.
 pub(crate) fn operations(work: impl FnOnce()) -> u64 {
     let before = OPERATIONS.get();
     work();
@@ -19,7 +20,7 @@ fn count(value: f64) -> Counted {
     Counted(value)
 }
 
-/// A double.
+/// A double-precision number that counts its operations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub(crate) struct Counted(f64);
 

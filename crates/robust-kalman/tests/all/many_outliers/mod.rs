@@ -8,15 +8,15 @@ use kestirim_robust_kalman::{Decision, Descent, Measurement, Reason, Robust, Sca
 use kestirim_scalar::{Q12_20, Q16_16, Scalar};
 use nalgebra::SVector;
 
-/// Position, clock, zenith delay and an ambiguity for each of forty satellites, of which a code and a phase are
-/// measured.
+/// Number of states: position, clock, zenith delay and an ambiguity for each of forty satellites, of which a code and a
+/// phase are measured.
 const STATES: usize = 45;
 const MEASUREMENTS: usize = 80;
-/// Of IGG III.
+/// Thresholds of IGG III.
 const K0: f64 = 2.5;
 const K1: f64 = 6.0;
 
-/// An estimate and its epoch.
+/// A predicted estimate and the measurements of its epoch.
 struct Case<T: Scalar> {
     predicted: Gaussian<T, STATES>,
     rows: Vec<[(usize, T); 5]>,
@@ -25,7 +25,7 @@ struct Case<T: Scalar> {
 }
 
 impl<T: Scalar> Case<T> {
-    /// The first `outliers` of a shuffled order are off by 5 to 30 deviations.
+    /// A case in which the first `outliers` measurements of a shuffled order are off by 5 to 30 standard deviations.
     fn new(seed: u64, outliers: usize) -> Self {
         let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
         let mut uniform = move || {
@@ -46,7 +46,7 @@ impl<T: Scalar> Case<T> {
             let own = if phase { 5 + index / 2 } else { 4 };
             let row = [(0, noise()), (1, noise()), (2, noise()), (3, 1.0), (own, 0.7)];
             rows.push(row.map(|(index, value)| (index, T::from_f64(value))));
-            // A clean epoch is one in which nothing stands out.
+            // The noise is clamped, so that no measurement of a clean epoch stands out.
             innovations.push(T::from_f64(sigma * (noise().clamp(-1.5, 1.5) + sign * off)));
             measured.push(T::from_f64(sigma * sigma));
         }
@@ -63,7 +63,7 @@ impl<T: Scalar> Case<T> {
     }
 }
 
-/// A pass with these weights.
+/// The estimate and the sum of the NIS after a pass with these weights.
 fn pass<T: Scalar>(case: &Case<T>, weights: &[T]) -> (Gaussian<T, STATES>, T) {
     let (mut estimate, mut nis) = (case.predicted, T::ZERO);
     for (measurement, &weight) in case.epoch().iter().zip(weights) {
@@ -83,7 +83,7 @@ fn residual<T: Scalar>(measurement: &Measurement<'_, T>, estimate: &Gaussian<T, 
     terms.fold(measurement.innovation, |left, term| left - term)
 }
 
-/// The worst first as it is defined: everything anew for every outlier.
+/// Worst-first treatment by its definition: everything is computed anew for every outlier.
 fn by_passes<T: Scalar>(case: &Case<T>, published: bool) -> (Gaussian<T, STATES>, Vec<T>) {
     let epoch = case.epoch();
     let mut weights = vec![T::ONE; MEASUREMENTS];
@@ -142,7 +142,7 @@ fn check_same<T: Scalar>(published: bool, tolerance: f64) {
             let variance = estimate.covariance.variances()[state].to_f64().sqrt() / deviation;
             assert!((variance - 1.0).abs() < tolerance, "seed {seed}: σ is {variance} of its own");
         }
-        // Single precision is too coarse here for most releases.
+        // Single precision is too coarse for most releases in this case.
         let most = if T::EPSILON.to_f64() < 1e-10 { 5 } else { MEASUREMENTS };
         assert!(summary.passes <= most, "seed {seed}: {} passes", summary.passes);
     }
@@ -160,7 +160,7 @@ fn so_they_are_where_the_scale_is_that_of_the_epoch() {
     check_same::<f64>(true, 1e-9);
 }
 
-/// One gross outlier pulls all others with it: they are not to be treated for it.
+/// A gross outlier pulls all other residuals along: the good measurements must not be treated for it.
 fn check_gross<T: Scalar>(predicted: f64, off: f64) {
     for seed in 1..=40 {
         let mut case = Case::<T>::new(seed, 0);
@@ -191,7 +191,7 @@ fn a_gross_outlier_takes_no_good_measurement_with_it() {
     check_gross::<Q12_20>(1.0, 20.0);
 }
 
-/// Operations of an update, number of treated measurements.
+/// The number of operations of an update, and the number of treated measurements.
 fn cost(seed: u64, outliers: usize) -> (u64, usize) {
     let case = Case::<Counted>::new(seed, outliers);
     let (epoch, mut treated) = (case.epoch(), 0);

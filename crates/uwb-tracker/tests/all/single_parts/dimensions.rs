@@ -1,15 +1,15 @@
-//! The same in the plane and in space, with a common bias and without.
+//! The same checks in the plane and in space, with and without a common bias.
 
 use super::wheels;
 use crate::common::{anchors, distance, sample};
 use kestirim_uwb_tracker::{CalibratedSpaceTracker, Config, Tracker};
 
-/// Anchors of a room, two at the ceiling and one on the floor in its middle.
+/// Anchors of a room, two at the ceiling and one on the floor in the middle.
 const FIVE: [[f64; 3]; 5] =
     [[0.0, 0.0, 2.5], [8.0, 0.0, 0.2], [8.0, 6.0, 2.5], [0.0, 6.0, 0.2], [4.0, 3.0, 0.0]];
 
-/// Of a tag that stands, with ranges 20 cm long, after five seconds in which only so many anchors are heard: the deviations of
-/// the common bias at the beginning and in the end, and how the first anchor's noise has grown.
+/// For a stationary tag with ranges that are 20 cm too long, after five seconds in which only this many anchors are
+/// heard: the initial and final standard deviations of the common bias, and the growth of the first anchor's noise.
 fn heard_of<const D: usize, const N: usize>(heard: usize, range_sigma: f64) -> (f64, f64, f64) {
     let config = Config { range_sigma, ..Config::uncalibrated(1.0) };
     let mut tracker = Tracker::<f64, D, N, 5>::new(config, &anchors(&FIVE, 0.0)).expect("a room");
@@ -26,7 +26,7 @@ fn heard_of<const D: usize, const N: usize>(heard: usize, range_sigma: f64) -> (
             tracker.range(&sample(100_000 * step, anchor, range(place))).expect("a range");
         }
         if step == 12 {
-            // The others are not fresh any more.
+            // The others are no longer fresh.
             (begun, noise) = (bias(&tracker), tracker.range_sigma(0).expect("an anchor"));
         }
     }
@@ -57,7 +57,7 @@ fn a_doubted_standstill_is_uncertain_in_every_direction() {
     for step in 0..400_u32 {
         let time_us = 100_000 * u64::from(step);
         tracker.odometry(&wheels(time_us, 0.0, 0.0)).expect("wheels");
-        // It is lifted along by a metre a second after twenty.
+        // After twenty seconds it is moved by one metre per second.
         let moved = 0.1 * f64::from(step.saturating_sub(200));
         for (anchor, &place) in FIVE.iter().enumerate() {
             let range = distance(place, [3.0 + moved, 2.0, 1.0]);
@@ -75,7 +75,7 @@ fn a_doubted_standstill_is_uncertain_in_every_direction() {
             && !tracker.health(time_us).still
         {
             for axis in 3..6 {
-                // As at the start, half a metre a second.
+                // As at the start: half a metre per second.
                 assert!(before[axis] < 0.01 && variances[axis] > 0.1, "{variances} {before}");
             }
             return;

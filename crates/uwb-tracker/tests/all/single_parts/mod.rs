@@ -1,4 +1,4 @@
-//! What the trackers' tests do not tell apart: single parts, at their bounds.
+//! Single parts that the trackers' other tests do not distinguish, at their limits.
 
 mod dimensions;
 mod published;
@@ -14,14 +14,14 @@ use nalgebra::{Vector2, Vector3};
 
 type Plane = CalibratedPlaneTracker<f64, 4>;
 
-/// Half a metre a second along the room, 1 m high.
+/// Half a metre per second along the room, 1 m high.
 const SPEED: f64 = 0.5;
 
 fn on_the_way(time_us: u64) -> [f64; 3] {
     [1.0 + SPEED * time_us as f64 * 1e-6, 2.0, 1.0]
 }
 
-/// Hears all corners of a tag at a place.
+/// Feeds the ranges of all corners for a tag at a place.
 fn hear(tracker: &mut Plane, time_us: u64, tag: [f64; 3]) {
     for (anchor, &place) in CORNERS.iter().enumerate() {
         tracker.range(&sample(time_us, anchor, distance(place, tag))).expect("a range");
@@ -31,7 +31,7 @@ fn hear(tracker: &mut Plane, time_us: u64, tag: [f64; 3]) {
 /// The time of the last range of [`following`] (µs).
 const NOW_US: u64 = 5_000_000;
 
-/// A tracker that has followed a tag on its way.
+/// A tracker that has followed a moving tag.
 fn following(config: Config<f64>) -> Plane {
     let mut tracker = Plane::new(config, &anchors(&CORNERS, 0.0)).expect("a room");
     for time_us in (0..=NOW_US).step_by(100_000) {
@@ -103,7 +103,7 @@ fn anchors_begin_with_the_same_noise() {
     assert_eq!(tracker.range_sigma(4), None);
 }
 
-/// Whether a sample of the wheels makes a difference to a range that comes so much later (µs).
+/// Whether an odometry sample affects a range that arrives this much later (µs).
 fn is_used(speed: f64, turn_rate: f64, later_us: u64) -> bool {
     let mut without = following(Config::calibrated(1.0));
     let mut with = without.clone();
@@ -139,7 +139,7 @@ fn wheels_stand_that_neither_drive_nor_turn() {
 fn a_position_that_ranges_contradict_is_counted_out_and_given_up() {
     let mut tracker = following(Config::calibrated(1.0));
     let (mut rejected, mut lost) = (0, false);
-    // It was carried five metres away.
+    // It was carried away by five metres.
     for step in 1..=3 {
         let time_us = NOW_US + 100_000 * step;
         for (anchor, &place) in CORNERS.iter().enumerate() {
@@ -156,7 +156,7 @@ fn a_position_that_ranges_contradict_is_counted_out_and_given_up() {
 
 #[test]
 fn a_position_is_given_up_after_a_minute_without_a_sample() {
-    // Nothing moves it, so that it does not become worthless before.
+    // Without motion, so that the position does not become useless before.
     let config = Config { acceleration_density: 0.0, ..Config::calibrated(1.0) };
     for (gap_us, state) in [(60_000_000, State::Tracking), (60_000_001, State::Lost)] {
         let mut tracker = following(config);
@@ -171,7 +171,7 @@ fn a_position_is_given_up_after_a_minute_without_a_sample() {
 fn a_position_is_given_up_beyond_two_metres() {
     let mut tracker = following(Config::calibrated(1.0));
     let mut last = 0.0;
-    // It is shaken, and nothing is heard of it.
+    // It is shaken, and no range arrives.
     for step in 1..300 {
         let time_us = NOW_US + 100_000 * step;
         let Some(sigma) = tracker.health(time_us).position_sigma else { break };
@@ -181,7 +181,7 @@ fn a_position_is_given_up_beyond_two_metres() {
         tracker.inertial(&shaken).expect("a sample");
     }
     assert!(tracker.position().is_none());
-    // Of each of two coordinates.
+    // For each of two coordinates.
     let most = 2.0 * 2_f64.sqrt();
     assert!((0.9 * most..=most).contains(&last), "{last}");
 }
@@ -189,7 +189,7 @@ fn a_position_is_given_up_beyond_two_metres() {
 #[test]
 fn a_first_position_does_not_begin_with_an_anchor_that_is_asked_twice() {
     let mut tracker = Plane::new(Config::calibrated(1.0), &anchors(&CORNERS, 0.0)).expect("a room");
-    // The fourth is silent. From the seventh range on a position is looked for, in a few steps with each.
+    // The fourth anchor is silent. From the seventh range on a position is searched for, a few steps with each range.
     let anchors = [0, 0, 1, 1, 2, 2].into_iter().cycle();
     let started = anchors.enumerate().take(20).position(|(step, anchor)| {
         let range = distance(CORNERS[anchor], on_the_way(0));
@@ -207,7 +207,7 @@ fn an_estimate_follows_the_imu_in_steps_of_a_tenth_of_a_second() {
     assert_eq!(tracker.estimate(), Some(&before));
     tracker.inertial(&inertial(NOW_US + 100_000, None)).expect("a sample");
     assert_ne!(tracker.estimate(), Some(&before));
-    // A push drives it at once.
+    // A push drives it immediately.
     let before = *tracker.estimate().expect("a position");
     tracker.inertial(&inertial(NOW_US + 100_001, Some([1.0; 2]))).expect("a sample");
     assert_ne!(tracker.estimate(), Some(&before));
@@ -215,7 +215,7 @@ fn an_estimate_follows_the_imu_in_steps_of_a_tenth_of_a_second() {
 
 #[test]
 fn what_stays_where_a_tag_stands_depends_on_its_speed() {
-    // Nothing is learnt, so that no anchor is better than another.
+    // Nothing is learnt, so that all anchors are equal.
     let config = Config { learning: None, ..Config::calibrated(1.0) };
     for speed in [0.05, 0.2] {
         let mut tracker = Plane::new(config, &anchors(&CORNERS, 0.0)).expect("a room");
@@ -260,13 +260,13 @@ fn a_larger_place_is_given_up_later() {
 fn a_range_of_which_fixed_point_makes_nothing_changes_nothing() {
     let number = Q12_20::from_f64;
     let corners = anchors::<Q12_20>(&CORNERS, 0.0);
-    // Whose acceleration is known: else it would be lost at such a speed.
+    // With a known acceleration: otherwise it would be lost at such a speed.
     let config = Config { acceleration_density: Q12_20::ZERO, ..Config::plain(Q12_20::ONE) };
     let mut tracker = CalibratedPlaneTracker::<Q12_20, 4>::new(config, &corners).expect("a room");
     for (anchor, &place) in CORNERS.iter().enumerate() {
         tracker.range(&sample(0, anchor, distance(place, [3.0, 2.0, 1.0]))).expect("a range");
     }
-    // By its IMU it is 1.6 km away in both directions: 2.3 km, beyond the numbers.
+    // According to its IMU it is 1.6 km away along both axes: 2.3 km, out of the number range.
     for step in 1..=26_u64 {
         let acceleration = Vector3::from([number(0.0), number(0.0), number(9.8)]);
         let push = Some([number(490.0); 2]);

@@ -13,7 +13,7 @@ fn epoch(tracker: &mut Published, time_us: u64, tag: [f64; 3]) -> PublishedOutco
     tracker.end_epoch(time_us)
 }
 
-/// The published filter at a place, of ranges that say nothing.
+/// The published filter at a position, with ranges that carry no information.
 fn blind() -> Published {
     let places = <[_; 4]>::try_from(anchors(&CORNERS, 0.0)).expect("four corners");
     let config = PublishedConfig { range_variance: 1e9, ..PublishedConfig::plain(1.0) };
@@ -29,7 +29,7 @@ fn the_published_filter_moves_as_it_is_pushed() {
     assert_eq!(epoch(&mut tracker, 500_000, [3.0, 2.0, 1.0]), PublishedOutcome::Taken);
     tracker.push(None);
     assert_eq!(epoch(&mut tracker, 1_500_000, [3.0, 2.0, 1.0]), PublishedOutcome::Taken);
-    // Half a second of acceleration, and a second of the velocity that it made.
+    // Half a second of acceleration, and a second with the resulting velocity.
     let mean = tracker.estimate().expect("a filter").mean;
     let expected = [3.0 + 0.125 + 0.5, 2.0 - 0.25 - 1.0, 0.5, -1.0];
     for (found, expected) in mean.iter().zip(expected) {
@@ -81,7 +81,7 @@ fn the_plain_published_filter_learns_nothing_of_its_ranges() {
         let [near, far] = [0.0, 0.01].map(|off| variance(config, off).to_matrix());
         (near - far).amax() / near.amax()
     };
-    // The row of a range hardly depends on where it is measured.
+    // The row of a range hardly depends on the place of linearisation.
     assert!(difference(plain) < 1e-3, "{}", difference(plain));
     assert!(difference(adaptive) > 2.0 * difference(plain), "{}", difference(adaptive));
 }

@@ -1,4 +1,4 @@
-//! A tag that is said to stand.
+//! A tag that is said to stand still.
 
 use super::{NOW_US, Plane, following, hear, on_the_way, wheels};
 use kestirim_uwb_tracker::Config;
@@ -7,7 +7,7 @@ use kestirim_uwb_tracker::Config;
 fn a_standstill_that_ranges_contradict_is_doubted_for_half_a_minute() {
     let mut tracker = following(Config::calibrated(1.0));
     let mut time_us = NOW_US;
-    // It stands …
+    // It stands, …
     let place = on_the_way(NOW_US);
     let mut on = |tracker: &mut Plane, seconds: u64, tag: &dyn Fn(u64) -> [f64; 3]| {
         let begin_us = time_us;

@@ -6,18 +6,18 @@ use std::sync::{Arc, Mutex};
 use crate::Error;
 use crate::commands::fleet::transport::{Delivery, Estimate, Log, Transport};
 
-/// A broker in memory: it outlives those who are killed.
+/// A broker in memory, which outlives the killed programs.
 #[derive(Debug, Default)]
 pub(super) struct Broker {
     pub(super) log: Vec<Vec<u8>>,
     pub(super) acknowledged: u64,
-    /// By device, in the order in which they were stored.
+    /// The stored estimates by device, in the order of arrival.
     pub(super) stored: BTreeMap<u32, Vec<Estimate>>,
-    /// How many were offered again.
+    /// The number of estimates that were offered again.
     pub(super) again: usize,
 }
 
-/// A connection that breaks at the given moment: so many calls, and halfway through the last.
+/// A connection that breaks after a given number of calls, halfway through the last.
 #[derive(Debug)]
 pub(super) struct Memory {
     pub(super) broker: Arc<Mutex<Broker>>,
@@ -27,7 +27,7 @@ pub(super) struct Memory {
 }
 
 impl Memory {
-    /// Whether this is the moment of the kill.
+    /// Whether this call is the one at which the connection breaks.
     fn is_killed(&mut self) -> bool {
         self.calls_left = self.calls_left.saturating_sub(1);
         self.calls_left == 0

@@ -56,7 +56,8 @@ fn log(plan: &dyn Plan, message: Maker) -> Vec<Vec<u8>> {
     log
 }
 
-/// What an estimator of its own makes of what a device sent, in a file: time and place after each message.
+/// The track that a separate estimator computes from a file of a device's messages: time and position after each
+/// message.
 fn replay(plan: &dyn Plan, log: &[Vec<u8>], device: u32) -> Vec<(u64, [f32; 3])> {
     let (mut online, mut boot, mut next) = (plan.build().unwrap(), 0, 0);
     let mut track = Vec::new();
@@ -106,7 +107,7 @@ fn killed_at_any_moment_every_track_is_that_of_the_devices_own_replay() {
             let mut fleet = Fleet::new(name, &plan).unwrap();
             let store = Store::open(folder.path(), name, Vec::new(), log_of("a", None), &mut fleet);
             let store = store.unwrap();
-            // Each time a little later; messages are received in other pieces.
+            // Each kill comes a little later, and messages are received in other batches.
             let (batch, calls_left) = (1 + kills % 4, 1 + kills % 11);
             let memory = Memory { broker: Arc::clone(&broker), next: 0, batch, calls_left };
             let every =
@@ -217,7 +218,7 @@ fn holes_are_counted_and_another_sender_is_told() {
     let mut fleet = Fleet::new(name, plan).unwrap();
     fleet.take(&[Delivery { position: 1, bytes: b"noise".to_vec() }]).unwrap();
     assert_eq!((fleet.keyed.unreadable, fleet.keyed.devices.len()), (1, 0));
-    // What no estimator takes gives a device no place; what it takes does, from there on.
+    // Messages that no estimator uses do not register a device; the first that is used does.
     let health = Health { time_us: 0, accepted: 0, rejected: 0, failed: 0 }.into();
     let bytes = frame(8, 0, 0, &health);
     fleet.take(&[Delivery { position: 2, bytes }]).unwrap();

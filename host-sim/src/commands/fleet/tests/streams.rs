@@ -1,4 +1,4 @@
-//! Estimators of systems that are stored, and messages for them.
+//! Estimators that can be stored, and messages for them.
 
 use std::sync::Arc;
 
@@ -11,10 +11,10 @@ use crate::systems::ALL;
 /// Makes the message of a device at a step, for the estimator of a plan.
 pub(super) type Maker = fn(&dyn Plan, u32, u64) -> Message;
 
-/// How far a tag is above what is on the map.
+/// The height of a tag above the items on the map.
 const HEIGHT_M: f64 = 0.5;
 
-/// Plans whose estimators are stored, each with messages for it.
+/// The plans whose estimators can be stored, each with a maker of messages.
 pub(super) fn plans() -> Vec<(&'static str, Arc<dyn Plan>, Maker)> {
     let mut plans = Vec::new();
     for system in ALL {
@@ -22,7 +22,7 @@ pub(super) fn plans() -> Vec<(&'static str, Arc<dyn Plan>, Maker)> {
         let _ = settings.set("height", &HEIGHT_M.to_string());
         let Ok(Some(plan)) = system.online(&settings, &Files::default()) else { continue };
         for message in [imu as Maker, range] {
-            // One that follows others takes these, too, but is nowhere.
+            // An estimator that follows other devices also uses these messages, but has no position.
             let mut online = plan.build().unwrap();
             let mut take = |step| online.take(&message(plan.as_ref(), 0, step)) == Outcome::Taken;
             let is_taken = (0..100).all(&mut take);
@@ -35,14 +35,14 @@ pub(super) fn plans() -> Vec<(&'static str, Arc<dyn Plan>, Maker)> {
     plans
 }
 
-/// A foot that is shaken now and then.
+/// The IMU of a foot that is shaken intermittently.
 fn imu(_: &dyn Plan, device: u32, step: u64) -> Message {
     let shake = if step % 100 < 50 { 0.0 } else { (step as f32 * 0.3 + device as f32).sin() };
     let specific_force = [3.0 * shake, shake, 9.81];
     Imu { time_us: step * 10_000, specific_force, angular_rate: [shake, 0.1 * shake, 0.0] }.into()
 }
 
-/// A tag that goes round among what is on the map.
+/// The ranges of a tag that circles among the items on the map.
 fn range(plan: &dyn Plan, device: u32, step: u64) -> Message {
     let map = plan.map();
     let anchors = map.first().map_or(Vec::new(), |it| it.x.iter().zip(&it.y).collect());

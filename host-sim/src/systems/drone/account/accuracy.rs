@@ -1,37 +1,37 @@
-//! Estimates against the truth.
+//! Errors of the estimates relative to the truth.
 
 use kestirim_replay::drone::{Estimate, Track};
 use serde::Serialize;
 
 use crate::metrics::error_over_sigma;
 
-/// Errors are told after each of these, s.
+/// The interval at which errors are reported, in seconds.
 const MINUTE_S: f64 = 60.0;
 
-/// How good an estimate is.
+/// The accuracy of the estimates of a flight.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Accuracy {
-    /// Distance of the last estimate from the truth, m.
+    /// The distance of the last estimate from the truth (m).
     error_m: f64,
-    /// The same after each minute since the first measurement.
+    /// The distance from the truth after each minute since the first measurement.
     error_after_s: Vec<ErrorAfter>,
-    /// Whether the last 90 % region holds the truth.
+    /// Whether the last 90 % region contains the truth.
     in_90_percent_region: Option<bool>,
-    /// The last error over the standard deviation that was told with it.
+    /// The last error divided by the standard deviation reported with it.
     error_over_sigma: Option<f64>,
 }
 
-/// An error at a time.
+/// An error at a given time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 struct ErrorAfter {
-    /// Time since the first measurement, s.
+    /// The time since the first measurement (s).
     s: f64,
-    /// Distance of the estimate from the truth, m.
+    /// The distance of the estimate from the truth (m).
     error_m: f64,
 }
 
 impl Accuracy {
-    /// Of some estimates; none if the truth is not known.
+    /// The accuracy of a series of estimates; `None` if the truth is not known.
     pub(super) fn of(track: &Track, estimates: &[Estimate]) -> Option<Self> {
         let (first, last) = (estimates.first()?, estimates.last()?);
         let begin = track.stop(first).t;
@@ -50,7 +50,7 @@ impl Accuracy {
         })
     }
 
-    /// Names and values for people.
+    /// The names and values as text.
     pub(super) fn in_words(&self) -> Vec<(String, String)> {
         let mut words = vec![("error".to_owned(), format!("{:.1} m", self.error_m))];
         words.extend(self.error_after_s.iter().map(|ErrorAfter { s, error_m }| {

@@ -1,14 +1,15 @@
-//! What a filter believes.
+//! Figures of a filter's belief about the position.
 
 use kestirim_replay::drone::{Cloud, Region, Track};
 
 use super::knowledge::Known;
 use crate::figure::{Colour, Figure, Mark, Series};
 
-/// Moments of a flight at which its cloud is drawn.
+/// The number of moments of a flight at which the cloud is drawn.
 const MOMENTS: usize = 6;
 
-/// Draws the light, the heavy, where nine of ten are, and where they were if it were normally distributed.
+/// Draws the light and the heavy particles, the border of the region that holds 90 %, and that of a normal
+/// distribution.
 pub(in crate::systems::drone) fn on(figure: Figure, cloud: &Cloud) -> Figure {
     let dots = |name: &str, places: &[[f32; 2]], colour| {
         let places = places.iter().map(|place| place.map(f64::from));
@@ -25,7 +26,7 @@ pub(in crate::systems::drone) fn on(figure: Figure, cloud: &Cloud) -> Figure {
 pub(super) fn at_moments(track: &Track, known: &[Known<'_>]) -> Figure {
     let count = known.len();
     let moments = MOMENTS.min(count);
-    // None is drawn twice.
+    // No moment is drawn twice.
     let places = (0..moments).map(|k| k * (count - 1) / moments.saturating_sub(1).max(1));
     let mut figure = Figure::new("clouds", "What was believed on the way")
         .axes("x, m", "y, m")
@@ -49,7 +50,7 @@ pub(super) fn at_moments(track: &Track, known: &[Known<'_>]) -> Figure {
     figure.with(Series::path("user", user).timed(times).coloured(Colour::Truth))
 }
 
-/// Short lines, each of which ends in a gap.
+/// A border of short separate line segments.
 fn border(name: &str, region: &Region) -> Series {
     let gap = [f64::NAN; 2];
     Series::path(name, region.border.iter().flat_map(|&[from, to]| [from, to, gap]))

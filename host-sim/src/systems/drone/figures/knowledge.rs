@@ -1,25 +1,26 @@
-//! How much a filter knows, and what each measurement tells it.
+//! Figures of how much a filter knows, and how much each measurement adds.
 
 use kestirim_replay::drone::{Cloud, Region, Track};
 use rayon::prelude::*;
 
 use crate::figure::{Colour, Figure, Mark, Series};
 
-/// A cloud's region, and when it was, s.
+/// A time (s), a cloud and its region.
 pub(super) type Known<'a> = (f64, &'a Cloud, Region);
 
-/// Of each estimate that has a cloud.
+/// The regions of all estimates that have a cloud.
 pub(super) fn regions(track: &Track) -> Vec<Known<'_>> {
     let known = |it| Some((track.seconds(it), it.cloud.as_ref()?, it.cloud.as_ref()?.region()));
     track.estimates.par_iter().filter_map(known).collect()
 }
 
-/// A line of one number of each.
+/// A line of one number over time.
 fn line(name: &str, known: &[Known<'_>], of: impl Fn(&Known<'_>) -> f64) -> Series {
     Series::path(name, known.iter().map(|it| [it.0, of(it)]))
 }
 
-/// Area of the smallest region that holds 90 % of the weight, and of the ellipse that would if the cloud were normally distributed.
+/// The area of the smallest region that holds 90 % of the weight, and that of the corresponding ellipse if the cloud
+/// were normally distributed.
 pub(super) fn region(known: &[Known<'_>]) -> Figure {
     Figure::new("region", "Area in which the user is with 90 %")
         .over_seconds("area, m²")
@@ -31,11 +32,12 @@ pub(super) fn region(known: &[Known<'_>]) -> Figure {
         .with(line("ellipse", known, |it| it.1.ellipse_m2()).coloured(Colour::Other(3)))
 }
 
-/// Bits by which each measurement makes the entropy of the posterior of the place smaller, −∫ p log₂ p (Lindley, *On a Measure of the
-/// Information Provided by an Experiment*, Ann. Math. Statist. 27 (1956)), and all so far. One bit halves the area of a uniform posterior.
+/// The bits by which each measurement reduces the entropy of the posterior of the position, −∫ p log₂ p (Lindley, *On a
+/// Measure of the Information Provided by an Experiment*, Ann. Math. Statist. 27 (1956)), and their sum so far. One bit
+/// halves the area of a uniform posterior.
 ///
-/// Where the user walks, what is forgotten meanwhile is counted: a gain can be below zero. The first measurement's is in the face of
-/// a user who is anywhere in `searched_m2`, if that is known.
+/// For a walking user the information lost in the meantime is included: a gain can be negative. The gain of the first
+/// measurement is relative to a user anywhere in `searched_m2`, if that is known.
 pub(super) fn information(known: &[Known<'_>], searched_m2: Option<f64>) -> Figure {
     let entropies: Vec<_> = known.iter().map(|(t, _, region)| [*t, region.entropy_bits]).collect();
     let [all, gains] = gained(&entropies, searched_m2.map(f64::log2));
@@ -49,10 +51,10 @@ pub(super) fn information(known: &[Known<'_>], searched_m2: Option<f64>) -> Figu
         .with(gains.coloured(Colour::Ours))
 }
 
-/// Of times and entropies: what was gained since the beginning, and since the one before.
+/// From times and entropies: the information gained since the beginning, and since the previous estimate.
 fn gained(entropies: &[[f64; 2]], prior: Option<f64>) -> [Vec<[f64; 2]>; 2] {
     let first = prior.or_else(|| Some(entropies.first()?[1])).unwrap_or_default();
-    // Without a prior the first measurement tells nobody knows how much.
+    // Without a prior the gain of the first measurement is unknown.
     let told = &entropies[usize::from(prior.is_none()).min(entropies.len())..];
     let mut before = first;
     let gains = told.iter().map(|[t, bits]| [*t, std::mem::replace(&mut before, *bits) - bits]);
@@ -60,7 +62,7 @@ fn gained(entropies: &[[f64; 2]], prior: Option<f64>) -> [Vec<[f64; 2]>; 2] {
     [told.iter().map(|[t, bits]| [*t, first - bits]).collect(), gains]
 }
 
-/// How many particles or points carry the weight.
+/// The effective sample size: how many particles or points carry the weight.
 pub(super) fn effective(known: &[Known<'_>]) -> Figure {
     Figure::new("effective", "Effective sample size")
         .over_seconds("particles or points")

@@ -1,4 +1,4 @@
-//! Path losses: measured, predicted, expected.
+//! Figures of path losses: measured, predicted and expected.
 
 use kestirim_air_to_ground::{Channel, PathLoss};
 use kestirim_replay::drone::{Cloud, Estimate, Stop, Track};
@@ -8,18 +8,19 @@ use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::distance;
 use crate::systems::drone::settings::expected_loss_db;
 
-/// Of so many places of a cloud's sample one predicts.
+/// One in this many positions of a cloud's sample is used for the prediction.
 const STRIDE: usize = 4;
-/// Of the predicted losses are below the band and above it.
+/// The probability below the band of predicted losses, and that above it.
 const TAIL: f64 = 0.025;
-/// Times that the stretch in which a border of the band lies is halved.
+/// The number of bisection steps that locate a border of the band.
 const HALVINGS: usize = 14;
 
-/// A loss that is one of several normal distributions: share, mean and deviation of each, dB.
+/// A loss distributed as a mixture of normal distributions: weight, mean and standard deviation (dB) of each.
 struct Mixture(Vec<[f64; 3]>);
 
 impl Mixture {
-    /// Of the loss at a stop to a user of whom a cloud is known: with a line of sight or without, to each place.
+    /// The distribution of the loss between a stop and a user with the given cloud: to each position, with and without
+    /// a line of sight.
     fn of(channel: &Channel<f64>, cloud: &Cloud, stop: &Stop) -> Option<Self> {
         let to = |place: &[f32; 2]| {
             channel.path_loss(distance(stop.place, place.map(f64::from)), stop.height).ok()
@@ -36,7 +37,7 @@ impl Mixture {
         (!parts.is_empty()).then_some(Self(parts))
     }
 
-    /// The loss below which so large a part of all lies.
+    /// The quantile of the distribution for a probability of `part`.
     fn quantile(&self, part: f64) -> f64 {
         let all: f64 = self.0.iter().map(|[share, ..]| share).sum();
         let end = |sign: f64| {
@@ -55,8 +56,8 @@ impl Mixture {
     }
 }
 
-/// Part of a standard normal distribution that is below a value, to 1e-7 (Abramowitz & Stegun, *Handbook of Mathematical Functions*,
-/// 1964, 26.2.17).
+/// The standard normal distribution function, to 1e-7 (Abramowitz & Stegun, *Handbook of Mathematical Functions*, 1964,
+/// 26.2.17).
 fn normal_below(value: f64) -> f64 {
     let t = 1.0 / (1.0 + 0.231_641_9 * value.abs());
     let sum = [1.330_274_429, -1.821_255_978, 1.781_477_937, -0.356_563_782, 0.319_381_530];
@@ -65,19 +66,19 @@ fn normal_below(value: f64) -> f64 {
     if value > 0.0 { 1.0 - above } else { above }
 }
 
-/// What was predicted of a measurement before it was made, by what was believed after the one before.
+/// The prediction of a measurement before it was made, from the belief after the previous one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Predicted {
-    /// Since the first measurement, s.
+    /// The time since the first measurement (s).
     t: f64,
-    /// dB.
+    /// The measured loss (dB).
     measured: f64,
-    /// 95 % are in between, dB.
+    /// The band that holds 95 % of the predicted distribution (dB).
     band: [f64; 2],
 }
 
 impl Predicted {
-    /// Of all measurements but the first, if the channel is known.
+    /// The predictions of all measurements but the first, if the channel is known.
     pub(super) fn of(track: &Track, channel: Option<&Channel<f64>>) -> Vec<Self> {
         let Some(channel) = channel else { return Vec::new() };
         let one = |pair: &[Estimate]| {
@@ -90,7 +91,7 @@ impl Predicted {
         track.estimates.par_windows(2).filter_map(one).collect()
     }
 
-    /// Share of the measurements that are in their bands; none of none.
+    /// The share of measurements inside their bands; `None` if there are none.
     pub(super) fn share(all: &[Self]) -> Option<f64> {
         let inside = |it: &&Self| it.band[0] <= it.measured && it.measured <= it.band[1];
         let count = all.iter().filter(inside).count();
@@ -98,7 +99,8 @@ impl Predicted {
     }
 }
 
-/// What was measured, in which band it was predicted, and what the channel expects where it is known.
+/// The figure of measured losses, predicted bands, and the losses that the channel expects if the true position is
+/// known.
 pub(super) fn figure(
     track: &Track,
     channel: Option<&Channel<f64>>,
@@ -142,7 +144,7 @@ mod tests {
             assert!((one.quantile(part) - known).abs() < 0.01, "{part}");
         }
         let two = Mixture(vec![[0.9, 100.0, 1.0], [0.1, 120.0, 1.0]]);
-        // A quarter of the upper one is above: of it all but 0.6745 deviations.
+        // A quarter of the upper component lies above it, which is at 0.6745 deviations above its mean.
         assert!((two.quantile(0.975) - 120.674).abs() < 0.01, "{}", two.quantile(0.975));
     }
 }

@@ -4,7 +4,7 @@ use kestirim_replay::drone::Track;
 
 use crate::stream::Stream;
 
-/// Measurements, estimates and, where it is known, the truth.
+/// The measurements, the estimates and, if known, the truth.
 pub fn streams(track: &Track) -> Vec<Stream> {
     let measured = track.stops.iter().map(|stop| {
         let [x, y] = stop.place;

@@ -1,4 +1,4 @@
-//! `host-sim run drone`: every table and figure of the thesis, and beyond.
+//! `host-sim run drone`: every table and figure of the thesis, and results beyond it.
 
 use std::f64::consts::TAU;
 
@@ -19,23 +19,23 @@ use crate::systems::drone::simulate::static_user::{FilterSetting, Geometry};
 use crate::systems::drone::simulate::trajectory::SIDE_M;
 use crate::systems::drone::simulate::trial::{self, Job};
 
-/// Trials of a cell of a user who stays unless told otherwise: portions of so many, until …
+/// The number of trials in a portion of a cell of a stationary user, unless specified otherwise.
 const PORTION: u64 = 110;
-/// … the standard error is this share of the mean, …
+/// The ratio of standard error to mean at which no further portion is run.
 const PRECISION: f64 = 0.03;
-/// … or there are so many portions.
+/// The maximum number of portions.
 const MOST_PORTIONS: u64 = 16;
-/// Trials of a cell of a user who moves, of whom each has hundreds of measurements.
+/// The number of trials of a cell of a moving user, each of which has hundreds of measurements.
 const MOVING_TRIALS: u64 = 12;
-/// What no table of the thesis has.
+/// The table name of results that are in no table of the thesis.
 const BEYOND: &str = "beyond the thesis";
-/// Speed of the drone unless told otherwise, km/h.
+/// The default speed of the drone (km/h).
 const SPEED_KMH: f64 = 40.0;
 
-/// The flights of one cell, or of all.
+/// The trials of one cell, or of all.
 ///
 /// # Errors
-/// If the scalar is not supported.
+/// If the number type is not supported.
 pub fn trials(options: &RunOptions, cell: &Settings) -> Result<Vec<Block>, Error> {
     let experiment = Experiment::of(options)?;
     Ok(match (cell.given().next().is_some(), cell.is_on("moving")) {
@@ -45,10 +45,10 @@ pub fn trials(options: &RunOptions, cell: &Settings) -> Result<Vec<Block>, Error
     })
 }
 
-/// What came of them.
+/// Evaluates the samples of the trials.
 ///
 /// # Errors
-/// As [`trials`].
+/// Those of [`trials`].
 pub fn report(options: &RunOptions, cell: &Settings, samples: &[Samples]) -> Result<Report, Error> {
     let Experiment { seed, scalar, .. } = Experiment::of(options)?;
     let (rows, refused) = match (cell.given().next().is_some(), cell.is_on("moving")) {
@@ -61,7 +61,7 @@ pub fn report(options: &RunOptions, cell: &Settings, samples: &[Samples]) -> Res
 
 struct Experiment {
     seed: u64,
-    /// As asked for; else as many as it takes.
+    /// The requested number of trials; `None` for as many as the precision takes.
     trials: Option<u64>,
     moving_trials: u64,
     scalar: ScalarKind,
@@ -74,7 +74,7 @@ impl Experiment {
         Ok(Self { seed, trials, moving_trials: trials.unwrap_or(MOVING_TRIALS), scalar })
     }
 
-    /// In the order in which [`everything`] takes them.
+    /// The blocks of all trials, in the order in which [`everything`] reads them.
     fn everything(&self) -> Vec<Block> {
         let (staying, (moving, _)) = (StaticSweeps::thesis(), moving());
         let jobs = staying.jobs.into_iter().enumerate();
@@ -119,7 +119,7 @@ impl Experiment {
     }
 }
 
-/// All walks, and those beyond the thesis, of which some are among the sweeps' own.
+/// All walks, and those beyond the thesis by index, as some are among those of the sweeps.
 fn moving() -> (MovingSweeps, Vec<(&'static str, usize)>) {
     let mut moving = MovingSweeps::thesis();
     let walks = beyond::walks().into_iter();
@@ -201,7 +201,7 @@ fn outcomes(job: &Job, samples: &Samples) -> Vec<trial::Outcome> {
     samples.rows().map(|row| trial::Outcome::of_numbers(job, row)).collect()
 }
 
-/// The thesis' filter and ours in one cell.
+/// The rows of the thesis' filter and of ours in one cell.
 fn both(outcomes: &[trial::Outcome], cell: &StaticCell) -> Vec<Row> {
     let row = published_row(outcomes, cell.published_filter, cell.published, cell.maximum);
     if cell.maximum { vec![row] } else { vec![row, best_row(outcomes, cell.best)] }
@@ -254,11 +254,12 @@ fn lost_percent(errors: &[f64]) -> f64 {
     100.0 * lost as f64 / errors.len().max(1) as f64
 }
 
-/// Fig. 3.4: by the published formulas, and by three other numbers with which all eight come out as published.
+/// The rows of Fig. 3.4: by the published formulas, and with another power, energy of a stop and spacing of the grid,
+/// which reproduce all eight published numbers.
 fn energies() -> Vec<Row> {
-    /// Power at 40 km/h, W, where the published constants give 1245.8.
+    /// The power at 40 km/h (W); the published constants give 1245.8.
     const POWER_W: f64 = 1125.0;
-    /// Energy of a stop, J, where they give 5 s · 1021.75 W = 5108.8.
+    /// The energy of a stop (J); the published constants give 5 s · 1021.75 W = 5108.8.
     const STOP_J: f64 = 6314.0;
     let speed = SPEED_KMH / 3.6;
     let rotor = Rotor::<f64>::base_station();
@@ -266,7 +267,7 @@ fn energies() -> Vec<Row> {
     for (name, published) in ["grid", "circle"].into_iter().zip(ENERGY) {
         for (stops, published) in STOPS.into_iter().zip(published) {
             let points = f64::from(stops);
-            // Eqs 2.16 and 2.17: the grid's spacing is printed as D/3 for every T.
+            // Eqs 2.16 and 2.17: the thesis prints D/3 as the grid's spacing for every T.
             let (published_m, flown) = if name == "grid" {
                 (SIDE_M / 3.0, SIDE_M / points.sqrt())
             } else {

@@ -1,4 +1,4 @@
-//! The thesis: what it prints, its experiment, and its part of the report.
+//! The thesis: its published numbers, its experiment, and its part of the report.
 
 pub mod chapter;
 pub mod experiment;

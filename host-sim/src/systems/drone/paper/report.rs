@@ -1,4 +1,4 @@
-//! Rows of published and own numbers, and how they are shown.
+//! Rows of published and own numbers, and their presentation.
 
 use std::fmt;
 
@@ -9,49 +9,49 @@ use crate::metrics::{mean, percentile, rms, standard_deviation};
 use crate::output;
 use crate::system::ScalarKind;
 
-/// Trials of which each of the thesis' numbers is a mean, or the maximum.
+/// The number of trials behind each of the thesis' numbers, which is their mean or maximum.
 const PUBLISHED_TRIALS: f64 = 100.0;
 
-/// With fewer trials nothing is compared with what is published.
+/// The minimum number of trials for a comparison with published numbers.
 const FEW: usize = 40;
 
-/// A cell of a table, of one filter.
+/// The results of one filter in a cell of a table.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Row {
-    /// Table or figure of the thesis, or what goes beyond it.
+    /// The table or figure of the thesis, or a name for what goes beyond it.
     pub table: &'static str,
-    /// Which cell.
+    /// The name of the cell.
     pub cell: String,
-    /// Which filter: `published`, `best`, or what is said.
+    /// The filter: `published`, `best`, or a description.
     pub filter: &'static str,
-    /// Trials.
+    /// The number of trials.
     pub trials: usize,
-    /// The thesis' number, m (J in Fig. 3.4); the plots of the moving user are lost, and print none.
+    /// The thesis' number in m (J in Fig. 3.4); the plots of the moving user are lost and give none.
     pub published: Option<f64>,
-    /// By how many of its own standard errors the published number differs from ours.
+    /// The difference between the published number and ours, in standard errors of the published one.
     pub published_z: Option<f64>,
-    /// Mean error, m.
+    /// The mean error (m).
     pub mean_m: Option<f64>,
-    /// Standard error of that mean, m.
+    /// The standard error of the mean (m).
     pub se_m: Option<f64>,
-    /// Root mean square error, m.
+    /// The root mean square error (m).
     pub rmse_m: Option<f64>,
-    /// Largest error, m; of a user who moves that of a flight, not of a step.
+    /// The largest error (m); for a moving user that of a flight, not of a step.
     pub max_m: Option<f64>,
-    /// Mean error of the exact posterior's mean on the same measurements, m.
+    /// The mean error of the exact posterior's mean on the same measurements (m).
     pub limit_m: Option<f64>,
-    /// Energy of the flight, J, by the published formulas.
+    /// The energy of the flight by the published formulas (J).
     pub energy_j: Option<f64>,
-    /// Trials with a mean error of 300 m and more, %.
+    /// The share of trials with a mean error of 300 m or more (%).
     pub lost_percent: Option<f64>,
-    /// Trials in which the 90 % region held the user, %.
+    /// The share of trials in which the 90 % region contained the user (%).
     pub credible_percent: Option<f64>,
-    /// What else is to be known.
+    /// A remark.
     pub note: Option<String>,
 }
 
 impl Row {
-    /// The numbers of a sample of errors, m.
+    /// The statistics of a sample of errors (m).
     pub fn of(errors: &[f64]) -> Self {
         let deviation = standard_deviation(errors);
         Self {
@@ -74,10 +74,11 @@ impl Row {
         Self { published, published_z, ..self }
     }
 
-    /// The expected maximum of a hundred such errors beside the published one, with its own deviation.
+    /// The expected maximum of a hundred such errors beside the published one, with its standard deviation.
     ///
-    /// A maximum of hundreds says little of the next hundred's. So the tail above the 95th percentile is taken
-    /// to be exponential, with the mean excess over it; the maximum's law is then Gumbel's.
+    /// The maximum of hundreds of errors says little about that of the next hundred. So the tail above the 95th
+    /// percentile is modelled as exponential, with the mean excess over it; the maximum then follows a Gumbel
+    /// distribution.
     pub fn of_maximum(errors: &[f64], published: f64) -> Self {
         const TAIL: f64 = 0.05;
         const EULER: f64 = 0.577_215_664_901_532_9;
@@ -90,7 +91,7 @@ impl Row {
         let scale = mean(&excess);
         let expected = threshold + scale * ((TAIL * PUBLISHED_TRIALS).ln() + EULER);
         let deviation = scale * std::f64::consts::PI / 6.0_f64.sqrt();
-        // The scale is known to a share of 1/√exceedances.
+        // The relative standard error of the scale is 1/√exceedances.
         let own = scale * 2.2 / (excess.len().max(1) as f64).sqrt();
         Self {
             trials: errors.len(),
@@ -104,18 +105,18 @@ impl Row {
     }
 }
 
-/// What the command prints.
+/// The report that the command prints.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
     /// Always `drone`.
     pub system: &'static str,
     /// Seed of all randomness.
     pub seed: u64,
-    /// Number type of the filters.
+    /// The number type of the filters.
     pub scalar: ScalarKind,
-    /// Measurements that a filter refused because nothing explained them: lost by degeneracy.
+    /// The number of measurements that a filter refused because no particle explained them: lost by degeneracy.
     pub refused: u32,
-    /// The cells.
+    /// The rows of all cells.
     pub rows: Vec<Row>,
 }
 
@@ -134,7 +135,7 @@ impl fmt::Display for Report {
     }
 }
 
-/// A table of rows; those of one cell stand together.
+/// A table of rows, in which those of one cell are adjacent.
 fn shown(rows: &[Row]) -> Table {
     let mut table = output::table();
     let title = rows.first().map_or("", |row| row.table);
@@ -200,7 +201,7 @@ mod tests {
     #[test]
     fn the_maximum_of_many_is_that_of_the_last_percent() {
         let errors: Vec<f64> = (0..10_000).map(|k| f64::from(k) / 1e4).collect();
-        // −ln of uniform numbers is exponentially distributed: the expected maximum of 100 is the harmonic sum.
+        // −ln of a uniform number is exponentially distributed: the expected maximum of 100 is the harmonic sum.
         let errors: Vec<f64> = errors.iter().map(|u| -(u + 5e-5).ln()).collect();
         let row = Row::of_maximum(&errors, 5.187 + 1.28);
         assert!((row.mean_m.unwrap() - 5.187).abs() < 0.05, "{row:?}");

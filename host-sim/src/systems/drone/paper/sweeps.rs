@@ -1,4 +1,4 @@
-//! Which cells the thesis has, and which trials they need.
+//! The cells of the thesis, and the trials that they need.
 
 use kestirim_particle_filter::Resampler;
 
@@ -11,43 +11,43 @@ use crate::systems::drone::simulate::static_user::{Geometry, PublishedFilter};
 use crate::systems::drone::simulate::trajectory::Trajectory;
 use crate::systems::drone::simulate::trial::Job;
 
-/// Points of our filter, unless the cell says otherwise.
+/// The number of points of our filter, unless the cell says otherwise.
 const POINTS: usize = 500;
-/// Numbers of measurements of Figs 3.2 and 3.3.
+/// The numbers of measurements of Figs 3.2 and 3.3.
 const MEASUREMENTS: [u32; 7] = [10, 15, 20, 25, 30, 35, 40];
-/// Numbers of points of Figs 3.4 and 3.5.
+/// The numbers of points of Figs 3.4 and 3.5.
 pub const STOPS: [u32; 4] = [4, 9, 16, 25];
 
-/// A cell of a user who stays.
+/// A cell with a stationary user.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticCell {
-    /// Table or figure.
+    /// The table or figure of the thesis.
     pub table: &'static str,
-    /// Which cell.
+    /// The name of the cell.
     pub cell: String,
-    /// The thesis' number, m.
+    /// The thesis' number (m).
     pub published: Option<f64>,
-    /// Whether that is the maximum of its trials rather than their mean.
+    /// Whether the thesis' number is the maximum of its trials rather than their mean.
     pub maximum: bool,
-    /// Which job's trials.
+    /// The index of the job with the cell's trials.
     pub job: usize,
-    /// Which of its filters as in the thesis.
+    /// The index of the job's filter that is the thesis' own.
     pub published_filter: usize,
-    /// Which of ours.
+    /// The index of the job's filter that is ours.
     pub best: usize,
 }
 
-/// All cells of users who stay; cells of the same measurements share them.
+/// All cells with stationary users; cells with the same measurements share a job.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StaticSweeps {
-    /// The trials to be made.
+    /// The jobs to run.
     pub jobs: Vec<Job>,
-    /// The cells.
+    /// The cells of all tables and figures.
     pub cells: Vec<StaticCell>,
 }
 
 impl StaticSweeps {
-    /// Table 3.2, Figs 3.2, 3.3 and 3.5.
+    /// The cells of Table 3.2 and Figs 3.2, 3.3 and 3.5.
     pub fn thesis() -> Self {
         let mut sweeps = Self::default();
         sweeps.table_3_2();
@@ -111,8 +111,8 @@ impl StaticSweeps {
             for (stops, published) in STOPS.into_iter().zip(published) {
                 let trajectory =
                     if shape == "grid" { Trajectory::grid(stops) } else { Trajectory::CIRCLE };
-                // What is printed takes more than one measurement a point, and a lower flight: nobody can
-                // come that close with one.
+                // The printed errors require several measurements per point and a lower flight: a single one cannot
+                // come that close.
                 let as_printed = Geometry { per_stop: 3, ..Geometry::circle(stops, 450.0) };
                 for geometry in [Geometry::circle(stops, 800.0), as_printed] {
                     let geometry = Geometry { trajectory, ..geometry };
@@ -157,7 +157,7 @@ fn measured(geometry: &Geometry) -> String {
     format!("{times} at h={height_m}")
 }
 
-/// Where a value stands in a list; at its end if it did not yet.
+/// The index of a value in a list, to which it is appended if it is not there yet.
 pub(super) fn place_of<T: PartialEq>(list: &mut Vec<T>, value: T) -> usize {
     list.iter().position(|known| *known == value).unwrap_or_else(|| {
         list.push(value);
@@ -165,30 +165,30 @@ pub(super) fn place_of<T: PartialEq>(list: &mut Vec<T>, value: T) -> usize {
     })
 }
 
-/// A cell of a user who moves.
+/// A cell with a moving user.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MovingCell {
-    /// Figure.
+    /// The figure of the thesis.
     pub table: &'static str,
-    /// Which cell.
+    /// The name of the cell.
     pub cell: String,
-    /// Which walk's trials.
+    /// The index of the walk with the cell's trials.
     pub walk: usize,
-    /// Speed of the drone, km/h.
+    /// The speed of the drone (km/h).
     pub speed_kmh: f64,
 }
 
-/// All cells of users who move; cells of the same walk share its trials.
+/// All cells with moving users; cells of the same walk share its trials.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MovingSweeps {
-    /// The trials to be made.
+    /// The walks to run.
     pub walks: Vec<Walk>,
-    /// The cells.
+    /// The cells of all figures.
     pub cells: Vec<MovingCell>,
 }
 
 impl MovingSweeps {
-    /// Figs 3.7 to 3.12.
+    /// The cells of Figs 3.7 to 3.12.
     pub fn thesis() -> Self {
         const SPEED: f64 = 40.0;
         let mut sweeps = Self::default();

@@ -8,10 +8,10 @@ use super::plane::{Origin, Places};
 use crate::Error;
 use crate::table;
 
-/// Reads columns x,y, or lat,lon as in the log: the corners in their order.
+/// Reads the corners of an area in order, from columns x,y, or lat,lon if the log has these.
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read(path: &Path, mut origin: Option<Origin>) -> Result<Box<Area>, Error> {
     let mut corners = Vec::new();
     table::read(

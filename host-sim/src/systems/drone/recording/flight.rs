@@ -1,4 +1,4 @@
-//! Recorded flights.
+//! Logs of flights.
 
 use std::path::Path;
 
@@ -11,40 +11,40 @@ use crate::Error;
 use crate::table::{self, Column, Found, Header, Log};
 use crate::text;
 
-/// A log.
+/// The contents of a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flight {
-    /// What was measured.
+    /// The measured quantity.
     pub quantity: Quantity,
-    /// In the order of their times.
+    /// The measurements of the user looked for, in chronological order.
     pub stops: Vec<Stop>,
-    /// Of whom, if the log says it.
+    /// The name of the transmitter looked for, if the log states it.
     pub transmitter: Option<String>,
-    /// Of other transmitters, of which nobody said that they are not looked for.
+    /// The measurements of other transmitters, unless they were excluded.
     pub others: Vec<Heard>,
-    /// Rows that no channel can use: without height, or a loss that no radio measures.
+    /// The number of rows that no channel model can use: without a height, or with a loss that no radio measures.
     pub unusable: usize,
-    /// Where the plane touches the Earth, if places were read by latitude and longitude.
+    /// The point where the plane touches the Earth, if positions were given by latitude and longitude.
     pub origin: Option<Origin>,
 }
 
-/// What was heard of a transmitter.
+/// The measurements of a transmitter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heard {
-    /// As the log names it.
+    /// The name of the transmitter in the log.
     pub name: String,
-    /// In the order of their times.
+    /// The measurements in chronological order.
     pub stops: Vec<Stop>,
 }
 
-/// From stop to stop it takes so long, s.
+/// The usual range of the time from stop to stop (s).
 const USUAL_STEP_S: [f64; 2] = [2e-2, 60.0];
-/// Reads columns t,x,y,h, or t,lat,lon,h, and `path_loss_db` or `rssi_db`; or levels with places in a ROS 1 bag or MCAP. Of
-/// several transmitters, which a column user names, `--topic` says which one is meant, or all are. The drone's heading
-/// (degrees clockwise from y, north) is taken where there is a column of it.
+/// Reads columns t,x,y,h, or t,lat,lon,h, and `path_loss_db` or `rssi_db`; or levels with positions in a ROS 1 bag or
+/// MCAP. If a column user names several transmitters, `--topic` selects one; otherwise all are read. The drone's
+/// heading (degrees clockwise from y, north) is read if there is a column for it.
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
     let bytes = text::bytes(path)?;
     let levels = levels::read(&bytes, options).map_err(|error| table::refused(path, &error))?;
@@ -63,7 +63,7 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
             let t = row.time_us(t)? as f64 * 1e-6;
             let place = places.read(row, &mut flight.origin)?;
             let height = row.number("h", h)?;
-            // An empty field means that no measurement came.
+            // An empty field means that no measurement was received.
             if row.is_empty(value) {
                 flight.unusable += 1;
                 return Ok(());
@@ -91,7 +91,7 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
 }
 
 impl Flight {
-    /// Of nothing measured.
+    /// A flight without measurements.
     pub fn new(quantity: Quantity) -> Self {
         let (stops, others) = (Vec::new(), Vec::new());
         Self { quantity, stops, transmitter: None, others, unusable: 0, origin: None }
@@ -118,7 +118,7 @@ fn of_levels(levels: levels::Levels) -> (Flight, Found) {
 #[derive(Debug, Clone, Copy)]
 struct Columns {
     places: Places,
-    /// Time, height, and what was measured.
+    /// The columns of the time, the height and the measured quantity.
     measured: [Column; 3],
     quantity: Quantity,
     user: Option<Column>,

@@ -1,4 +1,4 @@
-//! Places by latitude and longitude as metres to the east and north of a first one.
+//! Conversion of latitude and longitude to metres east and north of the first position.
 
 use crate::Error;
 use crate::table::{Column, Header, Row};
@@ -7,17 +7,17 @@ use crate::table::{Column, Header, Row};
 const SEMI_MAJOR_M: f64 = 6_378_137.0;
 const ECCENTRICITY_SQUARE: f64 = 6.694_379_990_14e-3;
 
-/// Where a plane touches the Earth.
+/// The point where a plane touches the Earth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Origin {
-    /// Degrees.
+    /// The latitude in degrees.
     pub latitude: f64,
-    /// Degrees.
+    /// The longitude in degrees.
     pub longitude: f64,
 }
 
 impl Origin {
-    /// Metres that a degree to the east and to the north is here.
+    /// The length of a degree in metres, to the east and to the north.
     fn metres_a_degree(&self) -> [f64; 2] {
         let (sine, cosine) = self.latitude.to_radians().sin_cos();
         let square = 1.0 - ECCENTRICITY_SQUARE * sine * sine;
@@ -26,35 +26,36 @@ impl Origin {
         [normal * cosine, meridian].map(f64::to_radians)
     }
 
-    /// A place in the plane; the first one is where it touches the Earth. None if that is nowhere near, or no place.
+    /// Converts a position to the plane; the first one becomes the origin. `None` if it is not a valid position, or
+    /// near a pole.
     pub fn place(origin: &mut Option<Self>, latitude: f64, longitude: f64) -> Option<[f64; 2]> {
         let is_place = latitude.abs() <= 89.0 && longitude.abs() <= 360.0;
         is_place
             .then(|| origin.get_or_insert(Self { latitude, longitude }).plane(latitude, longitude))
     }
 
-    /// A place in the plane, m to the east and north. Within 10 km it is right to a metre.
+    /// The position in the plane, metres to the east and north. Within 10 km it is accurate to a metre.
     fn plane(&self, latitude: f64, longitude: f64) -> [f64; 2] {
         let [east, north] = self.metres_a_degree();
         let turn = longitude - self.longitude;
-        // Across the date line the other way round is shorter.
+        // The shorter way may lead across the date line.
         let turn = turn - 360.0 * (turn / 360.0).round();
         [east * turn, north * (latitude - self.latitude)]
     }
 
-    /// Latitude and longitude of a place in the plane, degrees.
+    /// The latitude and longitude of a position in the plane, in degrees.
     pub fn degrees(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [east, north] = self.metres_a_degree();
         [self.latitude + y / north, self.longitude + x / east]
     }
 }
 
-/// The columns of places.
+/// The columns that hold positions.
 #[derive(Debug, Clone, Copy)]
 pub enum Places {
-    /// x and y, m.
+    /// The columns of x and y (m).
     Plane([Column; 2]),
-    /// Latitude and longitude, degrees.
+    /// The columns of latitude and longitude (degrees).
     Earth([Column; 2]),
 }
 
@@ -62,7 +63,7 @@ impl Places {
     /// Finds `x,y` or `lat,lon`.
     ///
     /// # Errors
-    /// As [`Header::require`].
+    /// Those of [`Header::require`].
     pub fn find(header: &Header<'_>) -> Result<Self, Error> {
         if let Some(columns) = header.all(["x", "y"])? {
             return Ok(Self::Plane(columns));
@@ -73,10 +74,10 @@ impl Places {
         }
     }
 
-    /// Refuses places that are told otherwise than the log's, of which `origin` is where its plane touches the Earth.
+    /// Refuses positions of another kind than those of the log; `origin` is given if that has latitudes and longitudes.
     ///
     /// # Errors
-    /// The header, and what was expected there.
+    /// An error that names the header, and what was expected there.
     pub fn as_in_log(self, header: &Header<'_>, origin: Option<Origin>) -> Result<Self, Error> {
         match (self, origin) {
             (Self::Plane(_), Some(_)) => {
@@ -89,10 +90,10 @@ impl Places {
         }
     }
 
-    /// The place of a row, m; the first one by latitude and longitude is the origin of all.
+    /// The position in a row (m); the first one by latitude and longitude becomes the origin of all.
     ///
     /// # Errors
-    /// The line, and what was expected there.
+    /// An error that names the line, and what was expected there.
     pub fn read(&self, row: &Row<'_>, origin: &mut Option<Origin>) -> Result<[f64; 2], Error> {
         match *self {
             Self::Plane([x, y]) => Ok([row.coordinate("x", x)?, row.coordinate("y", y)?]),
@@ -112,7 +113,7 @@ mod tests {
     #[test]
     fn a_plane_touches_the_earth() {
         let origin = Origin { latitude: 52.0, longitude: 179.999 };
-        // A minute of the meridian at 52° is 1854 m.
+        // A minute of latitude at 52° is 1854 m.
         let [x, y] = origin.plane(52.0 + 1.0 / 60.0, 179.999);
         assert!(x.abs() < 1e-9 && (y - 1854.5).abs() < 0.5, "{y}");
         let [x, _] = origin.plane(52.0, -179.999);

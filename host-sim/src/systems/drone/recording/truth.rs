@@ -1,4 +1,4 @@
-//! Where the users of a recorded flight really were.
+//! The true positions of the users of a recorded flight.
 
 use std::path::Path;
 
@@ -6,26 +6,27 @@ use super::plane::{Origin, Places};
 use crate::Error;
 use crate::table;
 
-/// True places: one of each user, or, with times, a user's track.
+/// The true positions: one for each user, or a user's track if times are given.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Truth {
     known: Vec<Known>,
 }
 
-/// A line.
+/// A line of the file.
 #[derive(Debug, Clone, PartialEq)]
 struct Known {
-    /// s; none of a user who stays.
+    /// The time (s); `None` for a stationary user.
     t: Option<f64>,
     place: [f64; 2],
     user: Option<String>,
 }
 
 impl Truth {
-    /// Reads columns x,y or lat,lon as in the log; of a user who moves t, and of several users the column user, too.
+    /// Reads columns x,y, or lat,lon if the log has these; for a moving user also t, and for several users also the
+    /// column user.
     ///
     /// # Errors
-    /// The file, the line, and what was expected there.
+    /// An error that names the file, the line, and what was expected there.
     pub fn read(path: &Path, mut origin: Option<Origin>) -> Result<Self, Error> {
         let mut known: Vec<Known> = Vec::new();
         table::read(
@@ -56,8 +57,8 @@ impl Truth {
         Ok(Self { known })
     }
 
-    /// Where a user was at a time (s): between two lines in proportion, before the first and after the last as in those. Lines
-    /// without a user are of any.
+    /// The true position of a user at a time (s), interpolated linearly between lines and constant before the first and
+    /// after the last. Lines without a user name apply to any user.
     pub fn of(&self, user: Option<&str>, t: f64) -> Option<[f64; 2]> {
         let is_of = |known: &&Known| {
             let Some(name) = &known.user else { return true };

@@ -1,4 +1,4 @@
-//! Which of several transmitters is looked for.
+//! The choice of a transmitter among several.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -9,24 +9,25 @@ use super::flight::{Flight, Heard};
 use crate::Error;
 use crate::text::{listed, printable};
 
-/// The transmitters that a log names, and what was heard of each.
+/// The transmitters that a log names, with the measurements of each.
 #[derive(Debug)]
 pub(super) struct Users<'a> {
-    /// The one that is looked for, if anybody says it.
+    /// The transmitter to look for, if specified.
     wanted: Option<&'a str>,
     heard: BTreeMap<String, Vec<Stop>>,
 }
 
-/// So many are named in a complaint.
+/// The maximum number of transmitters named in an error message.
 const MOST_NAMED: usize = 4;
 
 impl<'a> Users<'a> {
-    /// None was heard yet.
+    /// A collection without measurements.
     pub(super) fn new(wanted: Option<&'a str>) -> Self {
         Self { wanted, heard: BTreeMap::new() }
     }
 
-    /// Keeps a measurement, if it is usable, of the one of this name, which may be nothing; whether it may be looked for.
+    /// Stores a measurement, if it is usable, of the transmitter of this name, which may be empty. Returns whether this
+    /// transmitter may be the one looked for.
     pub(super) fn hear(&mut self, name: &str, stop: Stop, is_usable: bool) -> bool {
         let name = name.trim();
         if !self.heard.contains_key(name) {
@@ -40,17 +41,17 @@ impl<'a> Users<'a> {
         self.wanted.is_none_or(|wanted| wanted == name)
     }
 
-    /// Gives a flight what was heard: of the transmitter that is wanted, or, of all, of the one that was heard most often, and
-    /// of the others. Answers with what is to be told of the choice.
+    /// Assigns the measurements to a flight: those of the wanted transmitter, or else of the one heard most often,
+    /// along with the others. Returns a description of the choice.
     ///
     /// # Errors
-    /// [`Error::File`] if the one that is wanted was not heard.
+    /// [`Error::File`] if the wanted transmitter was not heard.
     pub(super) fn decide(
         mut self,
         path: &Path,
         flight: &mut Flight,
     ) -> Result<Option<String>, Error> {
-        // Rows without a name are those of the only one; of several nobody knows whose they are.
+        // Rows without a name belong to the only transmitter; if there are several, it is unknown to which one.
         let unnamed = self.heard.remove("").unwrap_or_default();
         let count = self.heard.len();
         let told = match self.wanted {
@@ -67,7 +68,7 @@ impl<'a> Users<'a> {
                 let most = |(_, a): &(&String, &Vec<Stop>), (_, b): &(&String, &Vec<Stop>)| {
                     a.len().cmp(&b.len())
                 };
-                // Of several that were heard as often the first.
+                // Of several heard equally often, the first is chosen.
                 let name = self.heard.iter().rev().max_by(most).map(|(name, _)| name.clone());
                 let name = name.unwrap_or_default();
                 flight.stops = self.heard.remove(&name).unwrap_or_default();
@@ -96,7 +97,7 @@ impl<'a> Users<'a> {
         Ok(told)
     }
 
-    /// A complaint about the one that is wanted.
+    /// The error that the wanted transmitter was not heard.
     fn refused(&self, path: &Path, wanted: &str) -> Error {
         let names = listed(self.heard.keys().map(String::as_str), MOST_NAMED);
         let wanted = printable(wanted);
@@ -138,7 +139,7 @@ mod tests {
         let (losses, told) = read(&format!("{LOG}3,9,9,40,-73,b\n"), None).unwrap();
         assert_eq!(losses, [70.0, 71.0, 72.0, 73.0]);
         assert_eq!(told, ["transmitter \"b\" of 2, heard most often: --topic says another"]);
-        // Of several that were heard as often it is the first.
+        // Of several heard equally often, the first is chosen.
         assert_eq!(read(LOG, None).unwrap().0, [50.0, 51.0, 52.0]);
         assert_eq!(
             read(LOG, Some("c")).unwrap_err(),
@@ -150,7 +151,7 @@ mod tests {
     fn the_only_one_needs_no_choice_and_a_choice_needs_a_column() {
         let alone = LOG.replace(",b\n", ",a\n");
         assert_eq!(read(&alone, None).unwrap().0.len(), 6);
-        // Rows in which nothing was heard, and a line that is cut.
+        // Rows without a received signal, and a truncated line.
         let silent = format!("{alone}3,9,9,40,,\n4,9,9,40,,\n5,9,9,4");
         assert_eq!(read(&silent, None).unwrap().0.len(), 6);
         let without = LOG.replace(",user", ",remark");

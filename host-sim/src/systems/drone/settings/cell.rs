@@ -1,4 +1,4 @@
-//! One cell of the experiment: a user who stays in 2000 m × 2000 m, or moves in 4000 m × 4000 m.
+//! A single cell of the experiment: a user who is stationary in 2000 m × 2000 m, or moves in 4000 m × 4000 m.
 
 use kestirim_replay::drone::EnvironmentKind;
 
@@ -7,10 +7,10 @@ use super::{FilterSetting, Geometry, Policy, Walk};
 use crate::output;
 use crate::system::{Idle, Setting, Settings};
 
-/// Metres that a cell may have.
+/// The range and step of lengths in a cell (m).
 const METRES: [f64; 3] = [0.1, 10_000.0, 0.1];
 
-/// What can be set.
+/// The available settings.
 pub fn table() -> Vec<Setting> {
     vec![
         super::filter(),
@@ -27,7 +27,7 @@ pub fn table() -> Vec<Setting> {
     ]
 }
 
-/// Why a setting has no effect as the others are.
+/// Why a setting has no effect given the others.
 pub fn idle(cell: &Settings, name: &str) -> Option<Idle> {
     let is_moving = cell.is_on("moving");
     match name {
@@ -52,17 +52,17 @@ pub fn walk(cell: &Settings) -> Walk {
     )
 }
 
-/// The measurements of a user who stays.
+/// The geometry of the measurements of a stationary user.
 pub fn geometry(cell: &Settings) -> Geometry {
     super::geometry(cell)
 }
 
-/// The filter of a user who stays.
+/// The filter for a stationary user.
 pub fn filter(cell: &Settings) -> FilterSetting {
     super::filter_of(cell)
 }
 
-/// What of a cell is no number, in words.
+/// The settings of a cell that are not numbers, as text.
 pub fn described(cell: &Settings) -> String {
     let environment = name(&cell.chosen::<EnvironmentKind>("environment"));
     if cell.chosen::<FilterKind>("filter") == FilterKind::Published {

@@ -1,4 +1,4 @@
-//! What there is to choose from.
+//! The choices of settings.
 
 use clap::ValueEnum;
 use kestirim_particle_filter::Resampler;
@@ -54,7 +54,7 @@ pub enum ResamplerKind {
 }
 
 impl ResamplerKind {
-    /// All, in the order of the thesis' figures.
+    /// All resamplers, in the order of the thesis' figures.
     pub const OF_THE_THESIS: [Self; 4] =
         [Self::Multinomial, Self::Residual, Self::Stratified, Self::Systematic];
 }

@@ -1,4 +1,4 @@
-//! The same in firmware.
+//! The equivalent configuration of firmware.
 
 use kestirim_replay::drone::{
     EnvironmentKind, MOST, MOST_PLACES, POINTS, Quantity, WAVELENGTH_M, level_prior,
@@ -14,7 +14,7 @@ const CHANNELS: &str = "kestirim_air_to_ground";
 const FILTERS: &str = "kestirim_particle_filter";
 const LOCATORS: &str = "kestirim_user_locator";
 
-/// What a firmware is configured with, in single precision.
+/// The configuration of firmware, in single precision.
 pub(in crate::systems::drone) fn firmware(
     recording: Option<&Recording>,
     settings: &Settings,
@@ -30,7 +30,7 @@ pub(in crate::systems::drone) fn firmware(
     literal.to_string()
 }
 
-/// With what a search does not forget by itself.
+/// Adds a line about the measurements that a search does not forget by itself.
 fn forgetting(settings: &Settings, literal: Literal) -> Literal {
     match settings.number("window") {
         Some(window_s) => literal.then(format!(
@@ -40,7 +40,7 @@ fn forgetting(settings: &Settings, literal: Literal) -> Literal {
     }
 }
 
-/// The search of a recorded flight.
+/// The search for the user of a recorded flight.
 fn recorded_flight(settings: &Settings, quantity: Quantity) -> Literal {
     let wavelength_m = wavelength_m(settings);
     if let Some(environment) = built(settings) {
@@ -66,7 +66,7 @@ fn recorded_flight(settings: &Settings, quantity: Quantity) -> Literal {
     ))
 }
 
-/// The filter of a synthetic user who stays.
+/// The filter for a stationary synthetic user.
 fn staying(settings: &Settings) -> Literal {
     match filter_of(settings) {
         FilterSetting::Best(points) => {
@@ -80,7 +80,7 @@ fn staying(settings: &Settings) -> Literal {
     }
 }
 
-/// The filter of a synthetic user who moves, and the drone's flight plan.
+/// The filter for a moving synthetic user, and the drone's flight plan.
 fn moving(settings: &Settings, walk: &Walk) -> Literal {
     let Walk { particles, environment, .. } = *walk;
     if let Policy::Hover(_) = walk.policy {
@@ -102,7 +102,7 @@ fn moving(settings: &Settings, walk: &Walk) -> Literal {
         .then(format!("let orbit = Orbit::<f32>::new({height});"))
 }
 
-/// The thesis' filter; its jitter if that is not the thesis' own, m.
+/// The thesis' filter, with a jitter (m) if it differs from the thesis' own.
 fn published(
     settings: &Settings,
     particles: usize,
@@ -128,7 +128,7 @@ fn published(
         ))
 }
 
-/// A lattice that is laid anew where the posterior is; with three dimensions the level is one of them.
+/// A lattice that is laid anew over the posterior; with three dimensions, the level is one of them.
 fn lattice(channel: &str, points: usize, measurements: usize, dimensions: usize) -> Literal {
     literal(&format!("{CHANNELS}::{{Channel, Environment}}"), "Channel::<f32>", channel)
         .import(&format!("{FILTERS}::Region"))

@@ -1,4 +1,4 @@
-//! Several users on one flight, and one who moves.
+//! Tests with several users on one flight, and with a moving one.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -10,26 +10,26 @@ use super::given_settings;
 use crate::system::{AnySystem, Files, Source, System, Wanted};
 use crate::systems::drone::Drone;
 
-/// Level of a user at a place, heard at another, 40 m higher.
+/// The level of a user at one position, received at another, 40 m higher.
 fn level([x, y]: [f64; 2], [east, north]: [f64; 2]) -> f64 {
     -40.0 - 20.0 * (east - x).hypot(north - y).hypot(40.0).log10()
 }
 
-/// Where the drone is after so many steps: along lines to and fro, 300 m long and 40 m apart.
+/// The position of the drone after a number of steps: along lines to and fro, 300 m long and 40 m apart.
 fn drone(step: u32) -> [f64; 2] {
     let (line, along) = (step / 16 % 8, f64::from(step % 16) * 20.0);
     [if line.is_multiple_of(2) { along } else { 300.0 - along }, 40.0 * f64::from(line)]
 }
 
-/// Steps of a flight that comes by three times, a second each.
+/// The number of steps, of a second each, of a flight that passes three times.
 const THRICE: u32 = 384;
 
-/// Where a user is after so many seconds who walks 1 m/s, 380 m during such a flight.
+/// The position, after a number of seconds, of a user who walks 1 m/s, 380 m during a flight of [`THRICE`] steps.
 fn walking(t: f64) -> [f64; 2] {
     [10.0 + 0.7 * t, 20.0 + 0.7 * t]
 }
 
-/// What a replay of a log tells, and the state of each row that it writes.
+/// The report of a log's replay, and the health of each row of the track that it writes.
 fn replayed_rows(log: &str, truth: &str, given: &[(&'static str, &str)]) -> (Value, Vec<String>) {
     let folder = tempfile::tempdir().unwrap();
     let track = folder.path().join("track.csv");
@@ -40,7 +40,7 @@ fn replayed_rows(log: &str, truth: &str, given: &[(&'static str, &str)]) -> (Val
     (report, states.collect())
 }
 
-/// What a replay of a log tells.
+/// The report of a log's replay.
 fn replayed(log: &str, truth: &str, given: &[(&'static str, &str)]) -> Value {
     replayed_for(&Wanted::default(), log, truth, given)
 }
@@ -68,7 +68,7 @@ fn all_users_of_a_flight_are_found() {
             let [x, y] = place;
             writeln!(log, "{step},{x},{y},40,{:.2},{name}", level(*user, place)).unwrap();
         }
-        // Of a third one too little is heard.
+        // Too little is heard of a third user.
         if step < 2 {
             writeln!(log, "{step},{},{},40,-99,c", place[0], place[1]).unwrap();
         }
@@ -116,7 +116,7 @@ fn a_stream_of_a_user_who_moves_is_followed_by_a_window() {
         let mut listener = plan.build().unwrap();
         for step in 0..THRICE {
             let (t, place) = (f64::from(step), drone(step));
-            // 38.5 dB are lost on the first metre at 2 GHz.
+            // The loss of the first metre at 2 GHz is 38.5 dB.
             let loss = -level(walking(t), place) - 40.0 + 38.5;
             let [x, y] = place.map(|axis| axis as f32);
             let time_us = u64::from(step) * 1_000_000;
@@ -133,7 +133,8 @@ fn a_stream_of_a_user_who_moves_is_followed_by_a_window() {
     assert!(some < 0.5 * all, "{some} m, {all} m of all");
 }
 
-/// An antenna that points to the front of a drone that flies to and fro: where the heading is known that is no error of the place.
+/// A directional antenna pointing forwards on a drone that flies to and fro: if the heading is known it causes no error
+/// of the position.
 #[test]
 fn a_heading_is_read_and_explains_an_antenna_that_turns() {
     let user = [120.0, 190.0];

@@ -1,4 +1,4 @@
-//! All filters on one recording.
+//! The comparison of all filters on one recording.
 
 use std::fmt;
 
@@ -8,18 +8,18 @@ use super::report::{Report, millimetres};
 use crate::output;
 use crate::systems::gnss::settings::Mode;
 
-/// What `--filter all` prints.
+/// The report that `--filter all` prints.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
     /// Always `gnss`.
     pub system: &'static str,
-    /// Whether the receiver was allowed to move.
+    /// Whether the receiver was assumed to move.
     pub mode: Mode,
-    /// All epochs from the first on.
+    /// The number of epochs from the first one on.
     pub epochs: usize,
-    /// What each of the filters found: the object that it alone would be reported with.
+    /// The results of each filter: the object that would be reported for it alone.
     pub filters: Vec<Report>,
-    /// What a reader should know of the files.
+    /// Warnings about the files.
     pub warnings: Vec<String>,
 }
 

@@ -14,87 +14,87 @@ use crate::system::System;
 use crate::systems::gnss::Gnss;
 use crate::systems::gnss::settings::{Mode, Setup};
 
-/// So many satellites are named as those with the most rejected observations.
+/// The number of satellites listed as those with the most rejected observations.
 const WORST: usize = 5;
 
-/// What the command prints of one filter.
+/// The report that the command prints for one filter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
     /// Always `gnss`.
     pub system: &'static str,
-    /// Which filter.
+    /// The filter.
     pub filter: FilterKind,
-    /// Whether as the paper publishes it.
+    /// Whether the filter is taken as published in the paper.
     #[serde(rename = "printed")]
     pub published: bool,
-    /// Whether the receiver was allowed to move.
+    /// Whether the receiver was assumed to move.
     pub mode: Mode,
-    /// From what positions were made.
+    /// The method by which positions were computed.
     pub method: Method,
-    /// All epochs from the first on.
+    /// The number of epochs from the first one on.
     pub epochs: usize,
     /// The first and the last epoch in UTC, as `2020-06-25 12:00:00 UTC`.
     pub utc: [String; 2],
-    /// Those with a solution that nothing contradicts.
+    /// The number of epochs with a solution that nothing contradicts.
     pub solved: usize,
-    /// Those with a solution that is not to be relied upon.
+    /// The number of epochs with a solution that cannot be relied upon.
     pub contradicted: usize,
-    /// The last position of the marker, ECEF, m.
+    /// The last position of the marker (ECEF, m).
     pub position_ecef_m: [f64; 3],
-    /// Its standard deviations to the east, north and up, m.
+    /// The standard deviations of the last position to the east, north and up (m).
     pub sd_enu_m: [f64; 3],
-    /// Of the last solution.
+    /// The state of convergence of the last solution.
     pub convergence: &'static str,
-    /// Since when every solution has been a converged one, min since the first epoch.
+    /// The time from which on every solution has converged, in minutes since the first epoch.
     pub converged_since_min: Option<f64>,
-    /// Zenith delay of the troposphere at the end, m.
+    /// The zenith delay of the troposphere at the end (m).
     pub zenith_delay_m: f64,
-    /// Codes and phases that the filter was given.
+    /// The number of code and phase observations given to the filter.
     pub observations: usize,
-    /// Those that were left out because they contradict the others.
+    /// The number of observations rejected because they contradict the others.
     pub rejected: usize,
-    /// Those that were given less weight.
+    /// The number of observations given less weight.
     pub deweighted: usize,
-    /// Ambiguities begun anew, but those of satellites that come or come back.
+    /// The number of ambiguities that were reset, except for satellites that rise or return.
     pub slips: usize,
-    /// The rejected codes and phases.
+    /// The rejected observations by kind: codes and phases.
     pub rejected_by_kind: Both,
-    /// The codes and phases of less weight.
+    /// The observations given less weight by kind: codes and phases.
     pub deweighted_by_kind: Both,
-    /// The slips by what showed them.
+    /// The cycle slips by the means that detected them.
     pub slips_by_kind: Slips,
-    /// The satellites of which most was rejected.
+    /// The satellites with the most rejected observations.
     pub most_rejected: Vec<Rejections>,
-    /// Observed satellites that did not serve, one an epoch.
+    /// Observed satellites that were not used, counted once per epoch.
     pub unused: Unused,
-    /// What came of whole ambiguities, if they were asked for.
+    /// The results of ambiguity fixing, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ambiguities: Option<Fixing>,
-    /// What a reader should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
-    /// How far from the truth, if it is known.
+    /// The accuracy, if the truth is known.
     pub accuracy: Option<Accuracy>,
-    /// What comes out forwards and backwards together, if that was asked for.
+    /// The results of forward–backward smoothing, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub smoothed: Option<SmoothedReport>,
 }
 
-/// What a filter found forwards and backwards.
+/// The results of a filter run forwards and backwards.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SmoothedReport {
-    /// How many epochs have a position.
+    /// The number of epochs with a position.
     pub positions: usize,
-    /// The position that is known best, ECEF, m: of a receiver at rest, its place.
+    /// The most accurate position (ECEF, m); for a stationary receiver, its position.
     pub position_ecef_m: [f64; 3],
-    /// Its standard deviations to the east, north and up, m.
+    /// The standard deviations of that position to the east, north and up (m).
     pub sd_enu_m: [f64; 3],
-    /// Of all positions from the first on, if the truth is known: root mean square distance, m …
+    /// The root mean square 3-D error of all positions from the first one on, if the truth is known (m).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rms_3d_m: Option<f64>,
-    /// … the largest, m …
+    /// The largest 3-D error of all positions, if the truth is known (m).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_3d_m: Option<f64>,
-    /// … and the first over the root mean square standard deviation.
+    /// The root mean square 3-D error divided by the root mean square standard deviation, if the truth is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error_over_sigma: Option<f64>,
 }
@@ -134,12 +134,12 @@ impl SmoothedReport {
     }
 }
 
-/// What was rejected of a satellite.
+/// The rejected observations of a satellite.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Rejections {
-    /// Its name.
+    /// The name of the satellite.
     pub satellite: String,
-    /// In how many epochs it was used.
+    /// The number of epochs in which it was used.
     pub epochs: usize,
     /// The rejected codes and phases.
     #[serde(flatten)]
@@ -147,7 +147,7 @@ pub struct Rejections {
 }
 
 impl Report {
-    /// What a filter found; none if that is no position at all.
+    /// The report of a filter; `None` if it found no position at all.
     pub(super) fn new(
         recording: &Recording,
         setup: &Setup,
@@ -200,13 +200,13 @@ impl Report {
     }
 }
 
-/// When the first and the last epoch are that were taken, s.
+/// The times of the first and the last epoch used (s).
 fn ends(recording: &Recording, setup: &Setup) -> [f64; 2] {
     let epochs = recording.epochs(setup.until);
     [epochs.first(), epochs.last()].map(|it| it.map_or(0.0, |epoch| recording.seconds(epoch)))
 }
 
-/// As in reports.
+/// The state of convergence, as named in reports.
 const fn convergence(health: Health) -> &'static str {
     match health {
         Health::Converging => "converging",
@@ -233,13 +233,13 @@ fn most_rejected(followed: &Followed) -> Vec<Rejections> {
 }
 
 impl Report {
-    /// The filter's name, and whether it is as published.
+    /// The name of the filter, and whether it is taken as published.
     pub(super) fn title(&self) -> String {
         let published = if self.published { " (published)" } else { "" };
         format!("{}{published}", self.filter.name())
     }
 
-    /// What matters most.
+    /// The most important results in a line.
     pub(super) fn in_a_line(&self) -> String {
         let rejected = format!("{} rejected, {} slips", self.rejected, self.slips);
         match &self.accuracy {
@@ -252,7 +252,7 @@ impl Report {
         }
     }
 
-    /// What it says, each with a name.
+    /// The results by name.
     pub fn facts(&self) -> Vec<(&'static str, String)> {
         let mut facts = Vec::new();
         let mut fact = |name, value| facts.push((name, value));
@@ -318,7 +318,7 @@ impl Report {
     }
 }
 
-/// A length as in tables.
+/// A length as shown in tables.
 pub fn millimetres(metres: f64) -> String {
     if metres.abs() < 10.0 { format!("{:.1} mm", 1e3 * metres) } else { format!("{metres:.3} m") }
 }

@@ -1,4 +1,4 @@
-//! Tables that a replay writes.
+//! The tables that a replay writes.
 
 use kestirim_gnss_files::satellite_name;
 use kestirim_gnss_ppp::Slip;
@@ -24,7 +24,7 @@ const RESIDUAL_COLUMNS: [&str; 13] = [
     "slip",
 ];
 
-/// A row for each position: time, ECEF, standard deviations to the east, north and up.
+/// A row for each position: time, ECEF coordinates, standard deviations to the east, north and up.
 pub(in crate::systems::gnss) fn track(followed: &Followed) -> Table {
     let row = |(Fix { t, position }, deviations): (&Fix, &[f64; 3])| {
         let position = <[f64; 3]>::from(*position).map(|metres| format!("{metres:.6}"));
@@ -38,11 +38,11 @@ pub(in crate::systems::gnss) fn track(followed: &Followed) -> Table {
     }
 }
 
-/// What became of each observation: a row for each satellite in each epoch.
+/// The outcome of each observation: a row for each satellite in each epoch.
 pub(in crate::systems::gnss) fn residuals(residuals: &[(f64, SatelliteReport)]) -> Table {
     let row = |(t, report): &(f64, SatelliteReport)| {
         let number = report.satellite;
-        // Satellites of GPS are called by their numbers since there were no others.
+        // GPS satellites keep their bare numbers from when there were no other systems.
         let name =
             if Systems::Gps.has(number) { number.to_string() } else { satellite_name(number) };
         let mut row = vec![format!("{t:.6}"), name];
@@ -60,7 +60,7 @@ pub(in crate::systems::gnss) fn residuals(residuals: &[(f64, SatelliteReport)]) 
     Table { rows: residuals.iter().map(row).collect(), ..Table::new(&RESIDUAL_COLUMNS) }
 }
 
-/// What `reason` columns hold.
+/// The text in `reason` columns.
 fn reason(reason: Reason) -> &'static str {
     match reason {
         Reason::Agrees => "agrees",
@@ -72,7 +72,7 @@ fn reason(reason: Reason) -> &'static str {
     }
 }
 
-/// What the `slip` column holds.
+/// The text in the `slip` column.
 const fn slip(slipped: Slipped) -> &'static str {
     match slipped {
         Slipped::New => "new",

@@ -1,4 +1,4 @@
-//! What a user should know of files, and of how they fit each other.
+//! Warnings about the files, and about contradictions between them.
 
 use kestirim_ppp_filter::Motion;
 use kestirim_replay::gnss::{Epoch, FilterKind, Followed, Recording, Tally, names};
@@ -6,7 +6,7 @@ use kestirim_replay::gnss::{Epoch, FilterKind, Followed, Recording, Tally, names
 use crate::metrics::median;
 use crate::systems::gnss::settings::Setup;
 
-/// What is the same for all filters, by what one of them made of the recording.
+/// The warnings that are the same for all filters, derived from the results of one of them.
 pub(super) fn of_recording(
     recording: &Recording,
     setup: &Setup,
@@ -28,7 +28,7 @@ pub(super) fn of_recording(
     warnings
 }
 
-/// A sentence about epochs that are missing.
+/// A warning about missing epochs.
 fn gaps(recording: &Recording, epochs: &[Epoch]) -> Option<String> {
     let steps: Vec<f64> = epochs.windows(2).map(|pair| pair[1].time.since(pair[0].time)).collect();
     let rounded = |seconds: f64| (1e3 * seconds).round() / 1e3;
@@ -43,7 +43,7 @@ fn gaps(recording: &Recording, epochs: &[Epoch]) -> Option<String> {
     ))
 }
 
-/// A sentence about epochs in which both directions of a smoothed track disagree.
+/// A warning about epochs in which the two directions of a smoothed track disagree.
 pub(super) fn apart(smoothed: &Followed, motion: Motion) -> Option<String> {
     let (first, count, of) = (smoothed.apart.first()?, smoothed.apart.len(), smoothed.fixes.len());
     let remedy = match motion {
@@ -55,7 +55,7 @@ pub(super) fn apart(smoothed: &Followed, motion: Motion) -> Option<String> {
     ))
 }
 
-/// What all filters tell of themselves, with the names of the filters unless that is true of all.
+/// The warnings of all filters, with the names of the filters unless a warning applies to all.
 pub(super) fn of_all(followed: &[(FilterKind, Followed)]) -> Vec<String> {
     let mut sentences: Vec<(String, Vec<&str>)> = Vec::new();
     for (filter, followed) in followed {

@@ -1,4 +1,4 @@
-//! Satellites one by one: what was reported of each while it was there.
+//! The observations of each satellite, arc by arc.
 
 use std::collections::BTreeMap;
 
@@ -8,22 +8,22 @@ use kestirim_robust_kalman::{Decision, Reason};
 
 use crate::metrics::median;
 
-/// A satellite has not set as long as it is missing for no more than so many epochs.
+/// The number of epochs for which a satellite may be missing without counting as set.
 const GAP_EPOCHS: f64 = 10.5;
 
-/// What was reported of a satellite, and when, s.
+/// A report of a satellite, with its time (s).
 pub type Sighting<'a> = (f64, &'a SatelliteReport);
 
 /// All satellites of a track.
 #[derive(Debug, Clone)]
 pub struct Arcs<'a> {
     satellites: BTreeMap<u8, Vec<Sighting<'a>>>,
-    /// What is missing for longer was away, s.
+    /// The longest gap (s) within an arc.
     pub longest_gap: f64,
 }
 
 impl<'a> Arcs<'a> {
-    /// Of a track that kept its residuals.
+    /// The arcs of a track that kept its residuals.
     pub fn of(followed: &'a Followed) -> Self {
         let steps: Vec<_> = followed.fixes.windows(2).map(|pair| pair[1].t - pair[0].t).collect();
         let mut satellites: BTreeMap<u8, Vec<_>> = BTreeMap::new();
@@ -33,12 +33,12 @@ impl<'a> Arcs<'a> {
         Self { satellites, longest_gap: GAP_EPOCHS * median(&steps) }
     }
 
-    /// Each satellite's number and all that was reported of it, in the order of time.
+    /// Each satellite's number with all its reports in chronological order.
     pub fn satellites(&self) -> impl Iterator<Item = (u8, &[Sighting<'a>])> {
         self.satellites.iter().map(|(number, sightings)| (*number, &**sightings))
     }
 
-    /// What was reported of a satellite from its rise to its setting, one after the other.
+    /// The reports of a satellite split into arcs from rise to setting.
     pub fn split<'b>(
         &self,
         sightings: &'b [Sighting<'a>],
@@ -48,12 +48,12 @@ impl<'a> Arcs<'a> {
     }
 }
 
-/// Whether an observation was left out.
+/// Whether an observation was rejected.
 pub fn is_rejected(decision: &Decision<f64>) -> bool {
     decision.reason == Reason::Rejected
 }
 
-/// Whether an epoch's solution rests on a satellite: on its code, its phase or both.
+/// Whether an epoch's solution uses a satellite: its code, its phase or both.
 pub fn is_used(report: &SatelliteReport) -> bool {
     !(is_rejected(&report.code) && is_rejected(&report.phase))
 }

@@ -1,4 +1,4 @@
-//! How the directions of satellites dilute the precision of their ranges.
+//! Dilution of precision from the directions of the satellites.
 
 use kestirim_gnss_ppp::Direction;
 use kestirim_replay::gnss::Followed;
@@ -7,31 +7,32 @@ use nalgebra::{Matrix4, Vector4};
 use super::arcs::{Arcs, is_used};
 use crate::figure::{Colour, Figure, Mark, Series};
 
-/// With a greater one the directions lie on a cone, as far as numbers can tell, and nothing is said.
+/// The largest dilution that is shown: beyond it the directions lie numerically on a cone.
 const MOST: f64 = 1e4;
 
-/// A kind of dilution as it is drawn: its name, its colour, and which it is.
+/// A kind of dilution as it is drawn: name, colour and value.
 type Kind = (&'static str, Colour, fn(&Dilution) -> f64);
 
-/// Dilution of precision: the standard deviation of what is solved for by that of ranges that are all equally good, have
-/// nothing in common, and are all that is known.
+/// Dilution of precision: the ratio of the standard deviation of the solution to that of the ranges, if these are
+/// equally accurate, uncorrelated, and the only information.
 ///
-/// Q = (HᵀH)⁻¹ with a row of H for each satellite: east, north and up of its direction, and 1 for the receiver's clock, one for
-/// all systems (Langley, *Dilution of precision*, GPS World 10(5), 1999).
+/// Q = (HᵀH)⁻¹ with a row of H for each satellite: the east, north and up components of its direction, and 1 for the
+/// receiver's clock, a single one for all systems (Langley, *Dilution of precision*, GPS World 10(5), 1999).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dilution {
-    /// Of place and clock: √tr Q.
+    /// The geometric dilution, of position and clock: √tr Q.
     pub geometric: f64,
-    /// Of the place.
+    /// The dilution of the position.
     pub position: f64,
-    /// To the east and north.
+    /// The horizontal dilution, of east and north.
     pub horizontal: f64,
-    /// Of the height.
+    /// The vertical dilution, of the height.
     pub vertical: f64,
 }
 
 impl Dilution {
-    /// Of satellites in these directions; none of fewer than four, or if no place follows from them.
+    /// The dilution of satellites in these directions; `None` for fewer than four, or if they do not determine a
+    /// position.
     pub fn of(directions: impl IntoIterator<Item = Direction>) -> Option<Self> {
         let mut normal = Matrix4::zeros();
         let mut count = 0;
@@ -56,14 +57,14 @@ impl Dilution {
     }
 }
 
-/// How many satellites were used, and what their directions make of the precision, over the hours.
+/// The number of satellites used and their dilution of precision over time, in hours.
 pub fn dilution(figure: Figure, followed: &Followed, arcs: &Arcs<'_>) -> Figure {
     let mut hours: Vec<f64> = Vec::new();
     let (mut counts, mut dilutions) = (Vec::new(), Vec::new());
     for epoch in followed.residuals.chunk_by(|(a, _), (b, _)| a == b) {
         let hour = epoch[0].0 / 3600.0;
         if let Some(last) = hours.last().filter(|last| hour - **last > arcs.longest_gap / 3600.0) {
-            // Nothing is known of the time without a solution.
+            // Nothing is known about a time without a solution.
             hours.push(*last);
             counts.push(f64::NAN);
             dilutions.push(None);
@@ -98,7 +99,7 @@ pub fn dilution(figure: Figure, followed: &Followed, arcs: &Arcs<'_>) -> Figure 
 mod tests {
     use super::*;
 
-    /// One at the zenith, three at an elevation, a third of a turn from each other.
+    /// One satellite at the zenith, and three at the given elevation, 120° apart in azimuth.
     fn tripod(elevation: f64) -> impl Iterator<Item = Direction> {
         let zenith = Direction { elevation: std::f64::consts::FRAC_PI_2, azimuth: 0.0 };
         let others = (0..3).map(move |third| Direction {
@@ -108,8 +109,8 @@ mod tests {
         std::iter::once(zenith).chain(others)
     }
 
-    /// By hand: with s = sin E the normal matrix is 3(1 − s²)/2 twice on the diagonal, and the block
-    /// (1 + 3s², 1 + 3s; 1 + 3s, 4) of the determinant 3(1 − s)².
+    /// Computed by hand: with s = sin E the normal matrix has 3(1 − s²)/2 twice on the diagonal, and the block (1 +
+    /// 3s², 1 + 3s; 1 + 3s, 4) with the determinant 3(1 − s)².
     #[test]
     fn four_satellites_by_hand() {
         for (elevation, sine) in [(0.0, 0.0), (30.0, 0.5)] {

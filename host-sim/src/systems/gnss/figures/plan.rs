@@ -1,4 +1,4 @@
-//! Positions on the ground.
+//! A plan of the positions on the ground.
 
 use kestirim_replay::gnss::{BEGINNING, Followed};
 use nalgebra::Vector3;
@@ -7,14 +7,13 @@ use super::arcs::Arcs;
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::median;
 
-/// A receiver moves if its positions are farther apart than so many standard deviations.
+/// The spread of the positions, in standard deviations, beyond which the receiver counts as moving.
 const MOVING: f64 = 10.0;
 
-/// A position to the east and north, m, and when, s.
+/// A time (s), and a position to the east and north (m).
 type Place = (f64, [f64; 2]);
 
-/// Where the positions are on the ground, about a place that is called `origin`: dots, or a path if they show a receiver that
-/// moves.
+/// The positions on the ground relative to a point named `origin`: dots, or a path if the receiver moves.
 pub fn plan(
     figure: Figure,
     followed: &Followed,
@@ -26,7 +25,7 @@ pub fn plan(
     let places: Vec<_> = places.map(|(fix, [e, n, _])| (fix.t, [e, n])).collect();
     let moves = moves(followed, &places);
     let (early, late) = places.split_at(places.partition_point(|(t, _)| *t < begin + BEGINNING));
-    // The beginning is metres off, of which a path need not be shy. A short recording has nothing else to show.
+    // The initial positions are metres off, which does not matter in a path. A short recording has no others to show.
     let hides = !moves && !late.is_empty();
     let drawn = |name: &str, places: &[Place]| {
         if moves { path(name, places, arcs.longest_gap) } else { dots(name, places) }
@@ -44,7 +43,7 @@ pub fn plan(
         .with(scale(&shown))
 }
 
-/// Whether most positions are far from their middle, for what is known of each.
+/// Whether most positions are far from their median, relative to their standard deviations.
 fn moves(followed: &Followed, places: &[Place]) -> bool {
     let along = |axis: usize| median(&places.iter().map(|(_, it)| it[axis]).collect::<Vec<_>>());
     let middle = [along(0), along(1)];
@@ -58,7 +57,7 @@ fn dots(name: &str, places: &[Place]) -> Series {
     dots.timed(places.iter().map(|(t, _)| *t))
 }
 
-/// A line that is interrupted where there was no position for longer than `longest`, s.
+/// A line that is interrupted where positions are missing for longer than `longest` (s).
 fn path(name: &str, places: &[Place], longest: f64) -> Series {
     let pieces = places.chunk_by(|(a, _), (b, _)| b - a <= longest);
     let pieces = pieces.flat_map(|piece| {
@@ -69,7 +68,7 @@ fn path(name: &str, places: &[Place], longest: f64) -> Series {
     Series::path(name, points).timed(times)
 }
 
-/// A bar of a round length below the left of some places, a third of their extent or less, with its length.
+/// A scale bar of a round length, at most a third of the positions' extent, below them on the left, with its length.
 fn scale(places: &[[f64; 2]]) -> Series {
     let ends = |axis: usize| {
         let along = places.iter().map(|place| place[axis]);
@@ -92,14 +91,14 @@ fn scale(places: &[[f64; 2]]) -> Series {
     Series::path("scale", points).labelled(labels).coloured(Colour::Truth)
 }
 
-/// The greatest of 1, 2 and 5 with any power of ten that is not above a length.
+/// The greatest product of 1, 2 or 5 and a power of ten that is not above a length.
 fn round_below(length: f64) -> f64 {
     let decade = 10_f64.powf(length.log10().floor());
     let steps = [5.0, 2.0].map(|step| step * decade);
     steps.into_iter().find(|step| *step <= length).unwrap_or(decade)
 }
 
-/// A round length with its unit.
+/// A round length with its unit, as text.
 fn in_words(metres: f64) -> String {
     match metres {
         1e3.. => format!("{:.0} km", metres / 1e3),
@@ -137,7 +136,8 @@ mod tests {
         assert!(scale(&[[2.0, 2.0]]).x.iter().all(|x| x.is_finite()));
     }
 
-    /// Two hours from the equator to the north at a speed, each position known to 5 cm, and 10 minutes without any.
+    /// A drive of two hours from the equator to the north at a constant speed, with each position known to 5 cm, and a
+    /// gap of 10 minutes.
     fn drive(metres_per_second: f64) -> Followed {
         let mut followed = Followed::default();
         for t in (0..240).map(|k| 30.0 * f64::from(k)).filter(|t| !(1000.0..1600.0).contains(t)) {

@@ -1,4 +1,4 @@
-//! Positions, and how well they are known, over the hours.
+//! Positions and their uncertainty over time, in hours.
 
 use kestirim_replay::gnss::Followed;
 use nalgebra::Vector3;
@@ -6,16 +6,16 @@ use nalgebra::Vector3;
 use super::hours;
 use crate::figure::{Colour, Figure, Mark, Series};
 
-/// The names of the axes of places.
+/// The names of the axes of positions.
 const AXES: [&str; 3] = ["east", "north", "up"];
-/// In 95 of 100 cases a normal error is below so many standard deviations.
+/// The number of standard deviations within which 95 % of normal errors lie.
 const OF_95: f64 = 1.96;
 
-/// The position to the east, north and up of a place over the hours, m, and where 95 of 100 would be by the standard deviations
+/// The position to the east, north and up of a point over time (m), with the 95 % bounds by the standard deviations
 /// that the filter reports.
 pub fn components(figure: Figure, followed: &Followed, about: &Vector3<f64>) -> Figure {
     let places = followed.enu_from(about);
-    // The beginning is metres off: what comes after it is to be seen.
+    // The initial positions are metres off: the scale is chosen for those that follow.
     let after = followed.fixes.first().map(|fix| fix.t + 1800.0);
     let late = followed.fixes.iter().zip(&places).filter(|(fix, _)| Some(fix.t) > after);
     let most = late.flat_map(|(_, place)| place).fold(0.05_f64, |most, it| most.max(it.abs()));
@@ -38,7 +38,7 @@ pub fn components(figure: Figure, followed: &Followed, about: &Vector3<f64>) -> 
         .with_all(bounds)
 }
 
-/// The standard deviations that the filter reports over the hours, and the error where the truth is known.
+/// The standard deviations that the filter reports over time, and the error if the truth is known.
 pub fn deviations(figure: Figure, followed: &Followed, truth: Option<&Vector3<f64>>) -> Figure {
     let along = |axis: usize| followed.deviations.iter().map(|it| it[axis]).collect();
     let figure = figure.over_hours("standard deviation, m").logarithmic().with_all(

@@ -1,4 +1,4 @@
-//! What is left in observations.
+//! Figures of residuals.
 
 use std::collections::BTreeMap;
 
@@ -10,25 +10,26 @@ use kestirim_robust_kalman::Decision;
 use super::arcs::{Arcs, is_rejected};
 use crate::figure::{Colour, Figure, Mark, Series};
 
-/// Residuals beyond this are all drawn, in standard deviations; …
+/// The residual, in standard deviations, beyond which all are drawn.
 pub const FAR: f64 = 4.0;
-/// … of the others about so many: in a drawing, …
+/// The approximate number of smaller residuals in a static drawing.
 const DRAWN_NEAR: usize = 600;
-/// … and where one can look closer.
+/// The approximate number of smaller residuals in a figure that can be zoomed.
 const SHOWN_NEAR: usize = 8_000;
-/// Over the elevation, where each has its time as well, fewer tell as much.
+/// The approximate number of smaller residuals over the elevation: each also has its time, so that fewer are as
+/// informative.
 const NEAR_OVER_ELEVATION: usize = 4_000;
 
-/// Code or phase of a satellite.
+/// A selector of a satellite's code or phase.
 pub type Kind = fn(&SatelliteReport) -> &Decision<f64>;
 
-/// The residual of an observation over its deviation √(Qᵥ/γ); none if it was rejected.
+/// The residual of an observation divided by its deviation √(Qᵥ/γ); `None` if it was rejected.
 pub fn standardised(decision: &Decision<f64>) -> Option<f64> {
     let weighted = decision.standardised * decision.weight.sqrt();
     (!is_rejected(decision)).then_some(weighted)
 }
 
-/// What is left in the observations in use over the hours, and that which is far off.
+/// The residuals of the observations in use over time, with the outlying ones marked.
 pub fn left(figure: Figure, followed: &Followed, kind: Kind) -> Figure {
     let used = followed.residuals.iter();
     let used = used.filter_map(|(t, report)| Some([t / 3600.0, standardised(kind(report))?]));
@@ -42,7 +43,7 @@ pub fn left(figure: Figure, followed: &Followed, kind: Kind) -> Figure {
     )
 }
 
-/// Residuals of each satellite over the hours, and those for which observations were rejected.
+/// The residuals of each satellite over time, and those of rejected observations.
 pub fn residuals(figure: Figure, followed: &Followed, kind: Kind) -> Figure {
     let step = followed.residuals.len().div_ceil(SHOWN_NEAR).max(1);
     let mut used: BTreeMap<u8, Vec<[f64; 2]>> = BTreeMap::new();
@@ -67,18 +68,19 @@ pub fn residuals(figure: Figure, followed: &Followed, kind: Kind) -> Figure {
     )
 }
 
-/// A kind of observation as it is shown over the elevation.
+/// A kind of observation as shown over the elevation.
 #[derive(Debug, Clone, Copy)]
 pub struct Shown {
-    /// Code or phase.
+    /// The selector of code or phase.
     pub kind: Kind,
-    /// What the filter takes for its noise.
+    /// The noise that the filter assumes.
     pub noise: Deviation,
-    /// In what unit it is shown, and how long that is, m.
+    /// The unit shown, and its length in metres.
     pub unit: (&'static str, f64),
 }
 
-/// Residuals of each satellite in use over its elevation, and three standard deviations of the noise as the filter takes it.
+/// The residuals of each satellite in use over its elevation, and three standard deviations of the noise that the
+/// filter assumes.
 pub fn over_elevation(figure: Figure, arcs: &Arcs<'_>, shown: Shown) -> Figure {
     let Shown { kind, noise, unit: (unit, metres) } = shown;
     let count: usize = arcs.satellites().map(|(_, sightings)| sightings.len()).sum();
@@ -95,7 +97,7 @@ pub fn over_elevation(figure: Figure, arcs: &Arcs<'_>, shown: Shown) -> Figure {
                     points.push([elevation, decision.residual / metres]);
                 }
             }
-            // Of one that has set nothing is shown.
+            // Nothing is shown after a satellite has set.
             times.extend(arc.last().map(|(t, _)| *t));
             points.extend(arc.last().map(|_| [f64::NAN; 2]));
         }

@@ -1,4 +1,4 @@
-//! When satellites were used.
+//! A figure of when satellites were used.
 
 use kestirim_ppp_filter::{SatelliteReport, Slipped};
 use kestirim_replay::gnss::Followed;
@@ -6,10 +6,10 @@ use kestirim_replay::gnss::Followed;
 use super::arcs::{Arcs, is_rejected};
 use crate::figure::{Colour, Figure, Mark, Series};
 
-/// What happens to satellites: its name, its colour, and whether it did.
+/// An event of a satellite: its name, its colour, and whether it occurred.
 pub(super) type Event = (&'static str, Colour, fn(&SatelliteReport) -> bool);
 
-/// What is marked of satellites.
+/// The events that are marked.
 pub(super) const EVENTS: [Event; 3] = [
     ("code rejected", Colour::Other(1), |report| is_rejected(&report.code)),
     ("phase rejected", Colour::Alarm, |report| is_rejected(&report.phase)),
@@ -18,7 +18,8 @@ pub(super) const EVENTS: [Event; 3] = [
     }),
 ];
 
-/// Which satellites were used when, what of them was rejected, and where their ambiguities began anew.
+/// The times at which each satellite was used, at which its observations were rejected, and at which its ambiguity was
+/// reset.
 pub fn satellites(figure: Figure, followed: &Followed, arcs: &Arcs<'_>) -> Figure {
     let used = arcs.satellites().flat_map(|(number, sightings)| {
         let at = move |t: f64| [t / 3600.0, f64::from(number)];

@@ -1,4 +1,4 @@
-//! Which satellite is the bad one.
+//! The table of satellites by quality.
 
 use kestirim_gnss_files::satellite_name;
 use kestirim_gnss_ppp::Slip;
@@ -23,8 +23,8 @@ const COLUMNS: [&str; 10] = [
     "mean elevation, °",
 ];
 
-/// A row a satellite, the one with the greatest share of rejected observations first; of equal ones, the one whose phases in use
-/// fit worst.
+/// The table with a row per satellite, ordered by the share of rejected observations, then by the residuals of the
+/// phases in use, the worst first.
 pub fn sheet(arcs: &Arcs<'_>) -> Sheet {
     let mut rows: Vec<_> = arcs.satellites().map(|(number, all)| Row::of(number, all)).collect();
     rows.sort_by(|a, b| b.badness().partial_cmp(&a.badness()).unwrap_or(std::cmp::Ordering::Equal));
@@ -35,19 +35,19 @@ pub fn sheet(arcs: &Arcs<'_>) -> Sheet {
         .with(rows.iter().map(Row::cells))
 }
 
-/// What became of a satellite.
+/// The statistics of a satellite.
 #[derive(Debug, Clone)]
 struct Row {
     name: String,
-    /// First and last use, s; none of one that was never used.
+    /// The times of the first and last use (s); `None` if it was never used.
     used: Option<[f64; 2]>,
     epochs: usize,
-    /// Shares of rejected codes and phases.
+    /// The shares of rejected codes and phases.
     rejected: [f64; 2],
     slips: usize,
-    /// Root mean square residuals of codes and phases, m.
+    /// The root mean square residuals of codes and phases (m).
     residuals: [f64; 2],
-    /// rad.
+    /// The elevation (rad).
     elevation: f64,
 }
 
@@ -71,7 +71,7 @@ impl Row {
     }
 
     fn badness(&self) -> [f64; 2] {
-        // Without any that was used nothing fits.
+        // A satellite that was never used counts as fitting worst.
         let phase = Some(self.residuals[1]).filter(|it| it.is_finite());
         [self.rejected[0] + self.rejected[1], phase.unwrap_or(f64::INFINITY)]
     }
@@ -95,19 +95,19 @@ impl Row {
     }
 }
 
-/// Root mean square of the residuals in use.
+/// The root mean square of the residuals in use.
 fn residual<'a>(decisions: impl Iterator<Item = &'a Decision<f64>>) -> f64 {
     let used = decisions.filter(|it| !is_rejected(it)).map(|it| it.residual);
     let used: Vec<f64> = used.collect();
     if used.is_empty() { f64::NAN } else { rms(&used) }
 }
 
-/// A number, or a dash where there is none.
+/// A number, or a dash if there is none.
 fn or_dash(value: f64, decimals: usize) -> String {
     if value.is_finite() { format!("{value:.decimals$}") } else { "—".to_owned() }
 }
 
-/// Whether its phase lost count of cycles: a satellite that comes, or comes back, is no slip.
+/// Whether the phase slipped; a satellite that rises or returns does not count.
 fn slipped(report: &SatelliteReport) -> bool {
     !matches!(report.slipped, None | Some(Slipped::New | Slipped::Seen(Slip::Gap)))
 }

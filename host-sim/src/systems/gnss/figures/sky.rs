@@ -1,4 +1,4 @@
-//! Where satellites stood.
+//! Sky plots of the satellites.
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
@@ -10,17 +10,18 @@ use super::arcs::{Arcs, Sighting};
 use super::satellites::EVENTS;
 use crate::figure::{Colour, Figure, Mark, Series};
 
-/// Between the points of an arc, s: a satellite moves by half a degree.
+/// The interval between the points of an arc (s), in which a satellite moves by half a degree.
 const SPACING_S: f64 = 60.0;
-/// Shorter arcs have no name, s: near the mask a satellite comes and goes.
+/// The minimum duration (s) of an arc that is labelled: near the mask a satellite comes and goes.
 const NAMED_S: f64 = 900.0;
-/// Circles of elevation, degrees; …
+/// The circles of elevation that are drawn (degrees).
 const CIRCLES: [f64; 3] = [0.0, 30.0, 60.0];
-/// … a little beyond the lowest stand the names of the directions, and the edge.
+/// The radius of the plot (degrees from the zenith): a little beyond the horizon, to leave room for the names of the
+/// directions.
 const EDGE: f64 = 106.0;
 
-/// The sky above the antenna: the zenith in the middle, north above, east on the right, degrees from the zenith outwards. `mask`
-/// is the lowest elevation that serves, rad.
+/// The sky above the antenna: the zenith in the middle, north at the top, east on the right, in degrees from the
+/// zenith. `mask` is the elevation mask (rad).
 pub fn sky(figure: Figure, followed: &Followed, arcs: &Arcs<'_>, mask: f64) -> Figure {
     let tracks = arcs.satellites().enumerate().map(|(place, (number, sightings))| {
         let (times, points): (Vec<_>, Vec<_>) =
@@ -28,7 +29,7 @@ pub fn sky(figure: Figure, followed: &Followed, arcs: &Arcs<'_>, mask: f64) -> F
         Series::path(satellite_name(number), points).timed(times).coloured(Colour::Other(place))
     });
     let crosses = EVENTS.map(|(name, colour, of)| {
-        // After each a gap: the cursor is on it at no other time.
+        // The gap after each makes the cursor select it at no other time.
         let marked = followed.residuals.iter().filter(|(_, report)| of(report));
         let marked = marked.flat_map(|(t, report)| [(*t, at(report.direction)), (*t, GAP)]);
         let (times, points): (Vec<_>, Vec<_>) = marked.unzip();
@@ -56,24 +57,24 @@ pub fn sky(figure: Figure, followed: &Followed, arcs: &Arcs<'_>, mask: f64) -> F
 
 const GAP: [f64; 2] = [f64::NAN; 2];
 
-/// The place of a direction.
+/// The point of a direction in the plot.
 fn at(Direction { elevation, azimuth }: Direction) -> [f64; 2] {
     let (sine, cosine) = azimuth.sin_cos();
     [sine, cosine].map(|part| (90.0 - elevation.to_degrees()) * part)
 }
 
-/// All around at an elevation, degrees.
+/// A circle of constant elevation (degrees).
 fn circle(elevation: f64) -> impl Iterator<Item = [f64; 2]> {
     let elevation = elevation.to_radians();
     (0..=72).map(move |step| at(Direction { elevation, azimuth: TAU * f64::from(step) / 72.0 }))
 }
 
-/// An arc in steps that can be seen, with a gap after it.
+/// An arc thinned to visible steps, followed by a gap.
 fn arc_with_gap(arc: &[Sighting<'_>]) -> Vec<(f64, [f64; 2])> {
     let mut drawn: Vec<(f64, [f64; 2])> = Vec::new();
     let last = arc.len().saturating_sub(1);
     for (index, (t, report)) in arc.iter().enumerate() {
-        // Times in files are rounded.
+        // The tolerance allows for times that are rounded in files.
         if index == last || drawn.last().is_none_or(|(before, _)| t - before > SPACING_S - 0.1) {
             drawn.push((*t, at(report.direction)));
         }
@@ -82,7 +83,7 @@ fn arc_with_gap(arc: &[Sighting<'_>]) -> Vec<(f64, [f64; 2])> {
     drawn
 }
 
-/// The names of satellites where they set.
+/// The labels of satellites where they set.
 fn names(arcs: &Arcs<'_>) -> Series {
     let (mut points, mut labels) = (Vec::new(), Vec::new());
     for (number, sightings) in arcs.satellites() {
@@ -100,7 +101,7 @@ fn names(arcs: &Arcs<'_>) -> Series {
     Series::points("names", points).marked(Mark::Dots).labelled(labels).coloured(Colour::Truth)
 }
 
-/// North, east, south and west, and what the circles are; gaps between them, so that no line is drawn.
+/// The labels of north, east, south and west and of the circles; gaps keep them from being joined by a line.
 fn words(mask: f64) -> Series {
     let winds =
         [([0.0, 91.0], "N"), ([96.0, -3.0], "E"), ([0.0, -99.0], "S"), ([-96.0, -3.0], "W")];

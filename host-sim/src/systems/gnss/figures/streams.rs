@@ -1,4 +1,4 @@
-//! What a filter made of a recording, for other programs.
+//! The streams of a filter's results, for other programs.
 
 use std::collections::BTreeSet;
 
@@ -13,8 +13,8 @@ use crate::stream::Stream;
 const ESTIMATE: [&str; 9] =
     ["x_m", "y_m", "z_m", "sd_x_m", "sd_y_m", "sd_z_m", "ecef_x_m", "ecef_y_m", "ecef_z_m"];
 
-/// The streams: places to the east (x), north (y) and up (z) of `about` (ECEF, m), which is the truth if
-/// `is_truth`; what became of the satellites if their residuals were kept.
+/// The streams: positions to the east (x), north (y) and up (z) of `about` (ECEF, m), which is the truth if `is_truth`;
+/// and the satellites' results if their residuals were kept.
 pub fn streams(followed: &Followed, about: &Vector3<f64>, is_truth: bool) -> Vec<Stream> {
     let places = followed.fixes.iter().zip(followed.enu_from(about)).zip(&followed.deviations);
     let estimate = places.map(|((fix, place), deviations)| {
@@ -35,7 +35,7 @@ pub fn streams(followed: &Followed, about: &Vector3<f64>, is_truth: bool) -> Vec
     streams
 }
 
-/// How many satellites were used and what of them was rejected.
+/// The numbers of satellites used and of rejected observations.
 fn counts(residuals: &[(f64, SatelliteReport)]) -> Stream {
     let row = |reports: &[(f64, SatelliteReport)]| {
         let count = |of: fn(&SatelliteReport) -> bool| {
@@ -53,7 +53,7 @@ fn counts(residuals: &[(f64, SatelliteReport)]) -> Stream {
     Stream::new("/gnss/satellites", &columns, epochs(residuals).map(row).collect())
 }
 
-/// A column a satellite that was ever used.
+/// A stream with a column per satellite that has reports.
 fn by_satellite(
     topic: &str,
     residuals: &[(f64, SatelliteReport)],
@@ -72,7 +72,7 @@ fn by_satellite(
     Stream { topic: topic.to_owned(), columns, rows: epochs(residuals).map(row).collect() }
 }
 
-/// What belongs to the same time: at least one satellite each.
+/// The reports grouped by epoch, each with at least one satellite.
 fn epochs(residuals: &[(f64, SatelliteReport)]) -> impl Iterator<Item = &[(f64, SatelliteReport)]> {
     residuals.chunk_by(|(a, _), (b, _)| a == b)
 }

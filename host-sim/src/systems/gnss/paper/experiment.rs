@@ -1,6 +1,6 @@
 //! `host-sim run gnss`: the paper's filters and ours on synthetic station-days.
 //!
-//! Every filter gets the same days, with faults; two of them get the same days without faults, too.
+//! Every filter gets the same days with faults; two of them also get the same days without faults.
 
 mod report;
 
@@ -17,19 +17,19 @@ use crate::systems::gnss::Gnss;
 use crate::systems::gnss::settings::SCALARS;
 use crate::systems::gnss::simulate::trial::{Score, trial};
 
-/// Station-days unless told otherwise; the paper has 100.
+/// The default number of station-days; the paper has 100.
 const TRIALS: u64 = 10;
-/// Variance that a kinematic filter gives each coordinate, m²/s: it knows nothing of the station's standing still.
+/// The variance rate of each coordinate in a kinematic filter (m²/s), which does not assume a stationary receiver.
 pub const PROCESS_NOISE: f64 = 1e-4;
 
-/// The rows with the paper's static filters, …
+/// The name of the table of the paper's static filters.
 pub(super) const STATIC: &str = "Table 2: static";
-/// … those with its kinematic filters, …
+/// The name of the table of the paper's kinematic filters.
 pub(super) const KINEMATIC: &str = "Table 3: kinematic";
-/// … and those of the days on which nothing goes wrong.
+/// The name of the table of the days without faults.
 pub(super) const CLEAN: &str = "the same days without faults";
 
-/// One filter on one kind of days.
+/// One filter on one kind of station-days.
 #[derive(Debug, Clone, Copy)]
 struct Case {
     table: &'static str,
@@ -42,14 +42,14 @@ struct Case {
 
 impl Case {
     fn filter(&self) -> (Config, bool) {
-        // The paper's states; and the synthetic weather is the same all around.
+        // The state has no gradient, as in the paper; and the synthetic weather is the same in all directions.
         let config = Config { gradient: 0.0, ..Config::new(self.motion) };
         (Config { estimator: self.estimator, ..config }, self.faults)
     }
 }
 
-/// All rows of the tables. As published the t-test is what it is anyway; UKF is IKF, as its factor never falls: one
-/// of the tables shows it.
+/// All rows of the tables. As published, the t-test is no different, and UKF equals IKF because its factor never falls:
+/// only one of the tables shows it.
 fn cases() -> Vec<Case> {
     let as_published =
         |estimator: Estimator| Estimator { robust: estimator.robust.published(), ..estimator };
@@ -95,10 +95,10 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// The station-days.
+/// The trials: one per station-day.
 ///
 /// # Errors
-/// If the scalar is not supported.
+/// If the number type is not supported.
 pub fn trials(options: RunOptions) -> Result<Vec<Block>, Error> {
     choose_scalar(Gnss::NAME, options.scalar, &SCALARS, ScalarKind::F64)?;
     let cases = cases();
@@ -116,10 +116,10 @@ pub fn trials(options: RunOptions) -> Result<Vec<Block>, Error> {
     Ok(vec![Block::new("days", columns, trials, day)])
 }
 
-/// What came of them.
+/// Evaluates the samples of the trials.
 ///
 /// # Errors
-/// As [`trials`].
+/// Those of [`trials`].
 pub fn report(options: RunOptions, samples: &[Samples]) -> Result<Report, Error> {
     let scalar = choose_scalar(Gnss::NAME, options.scalar, &SCALARS, ScalarKind::F64)?;
     let days = &samples[0];

@@ -1,15 +1,15 @@
-//! What the paper publishes, with the table it stands in.
+//! Results published in the paper, each with its table.
 
 use serde::Serialize;
 
-/// Mean errors of precise point positioning by one filter: north, east, up and in three dimensions, mm.
+/// Mean errors of a filter in precise point positioning: north, east, up and 3-D (mm).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PppErrors {
-    /// Mean of the absolute errors after 24 h.
+    /// The mean of the absolute errors after 24 h.
     pub final_mm: [f64; 4],
-    /// Root mean squares over all epochs after the first hour.
+    /// The root mean squares over all epochs after the first hour.
     pub rms_mm: [f64; 4],
-    /// Time until the error stays below 10 cm for 15 minutes; not published for kinematic solutions.
+    /// The time until the error stays below 10 cm for 15 minutes (min); not published for kinematic solutions.
     pub convergence_min: Option<f64>,
 }
 
@@ -26,7 +26,7 @@ pub const STATIC: [PppErrors; 5] = [
     ppp([4.6, 9.1, 11.5, 17.4], [9.3, 18.4, 24.6, 32.1], Some(30.46)),
     ppp([4.6, 9.0, 11.4, 17.4], [9.0, 18.1, 24.0, 31.8], Some(30.45)),
 ];
-/// Table 3: kinematic solutions of the same days by IKF and UKF.
+/// Table 3 of the same paper: kinematic solutions of the same days by IKF and UKF.
 pub const KINEMATIC: [PppErrors; 2] = [
     ppp([23.9, 27.8, 34.9, 57.8], [83.8, 96.1, 120.2, 175.2], None),
     ppp([20.3, 23.2, 32.3, 51.6], [51.3, 61.7, 107.1, 133.7], None),

@@ -1,4 +1,4 @@
-//! Where a marker really is.
+//! The true position of the marker.
 
 use std::path::Path;
 
@@ -7,13 +7,14 @@ use nalgebra::Vector3;
 use crate::Error;
 use crate::text::{TextFile, printable_path};
 
-/// No marker is nearer to the Earth's centre, or farther from it, m.
+/// The possible distances of a marker from the Earth's centre (m).
 const RADII: std::ops::Range<f64> = 6.3e6..6.5e6;
 
-/// Reads the place from the first line of a file.
+/// Reads the position from the first line of a file.
 ///
 /// # Errors
-/// [`Error::Line`] if it is none; [`Error::Usage`] if there is no such file: then it may have been a place itself.
+/// [`Error::Line`] if it is not a position; [`Error::Usage`] if there is no such file, as the argument may have been
+/// meant as a position.
 pub fn read(path: &Path) -> Result<Vector3<f64>, Error> {
     if !path.exists() {
         let expected = "expected X,Y,Z, a place on the ground (ECEF, m), or a file of it";
@@ -26,10 +27,10 @@ pub fn read(path: &Path) -> Result<Vector3<f64>, Error> {
     place(line.text).map_err(|problem| line.error(problem))
 }
 
-/// Reads `X,Y,Z`, a place on the ground.
+/// Parses `X,Y,Z`, a position on the ground (ECEF, m).
 ///
 /// # Errors
-/// In words: what was expected.
+/// A sentence that says what was expected.
 pub fn place(text: &str) -> Result<Vector3<f64>, String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|field| field.trim().parse()).collect();
     numbers

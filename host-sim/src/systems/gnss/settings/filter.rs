@@ -1,4 +1,4 @@
-//! Whether the receiver moves, and which filters are compared.
+//! The motion model, and the choice of filters.
 
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
@@ -18,7 +18,7 @@ pub enum Mode {
 }
 
 impl Mode {
-    /// Of a filter.
+    /// The mode that corresponds to a motion model.
     pub const fn of(motion: Motion) -> Self {
         match motion {
             Motion::Static => Self::Static,
@@ -30,14 +30,14 @@ impl Mode {
 /// One filter, or all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Choice {
-    /// One of them.
+    /// A single filter.
     One(FilterKind),
-    /// All of them, compared.
+    /// All filters, compared.
     All,
 }
 
 impl Choice {
-    /// Which, in the order of tables.
+    /// The chosen filters, in the order of tables.
     pub const fn filters(&self) -> &[FilterKind] {
         match self {
             Self::One(filter) => std::slice::from_ref(filter),

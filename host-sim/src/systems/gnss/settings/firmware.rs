@@ -1,4 +1,4 @@
-//! Settings as firmware says them.
+//! Settings in the form of firmware source.
 
 use kestirim_gnss_ppp::{Correction, Corrections};
 use kestirim_ppp_filter::{Config, Motion};
@@ -9,7 +9,7 @@ use super::Setup;
 use crate::system::{Literal, ScalarKind};
 
 impl Setup {
-    /// The same in firmware: the filter's settings and what of the receiver is corrected.
+    /// The equivalent configuration of firmware: the filter's settings and the corrections of the receiver.
     pub(in crate::systems::gnss) fn firmware(&self) -> String {
         let filter = self.main();
         let motion = match self.motion {

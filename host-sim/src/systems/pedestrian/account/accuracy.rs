@@ -1,4 +1,4 @@
-//! A tracked walk against the truth.
+//! The accuracy of a tracked walk.
 
 use kestirim_replay::pedestrian::{Footprint, TrackPoint, Walk, position_at};
 use serde::Serialize;
@@ -8,26 +8,25 @@ use crate::metrics::{
 };
 use crate::systems::pedestrian::recording::Recording;
 
-/// How far a walk is from the truth: horizontally, after a least-squares yaw alignment about the
-/// start.
+/// The horizontal errors of a walk, after a least-squares yaw alignment about the start.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Accuracy {
-    /// Root mean square distance over all true positions, the start included, m.
+    /// The root mean square error over all true positions, the start included (m).
     pub rmse_m: f64,
-    /// Distance at the last true position, m.
+    /// The error at the last true position (m).
     pub final_error_m: f64,
-    /// The same in percent of the true path length; none if truth stood still.
+    /// The error at the last true position in percent of the true path length; `None` if that is zero.
     pub final_error_percent: Option<f64>,
-    /// Error of the stance-to-stance path length in percent of the true one; positive is too long;
-    /// none if truth stood still.
+    /// The error of the stance-to-stance path length in percent of the true one, positive if too long; `None` if the
+    /// true one is zero.
     pub path_length_error_percent: Option<f64>,
-    /// Root mean square error over root mean square standard deviation, at all true positions but the first; none
-    /// without them.
+    /// The root mean square error divided by the root mean square standard deviation, at all true positions but the
+    /// first; `None` without standard deviations.
     pub error_over_sigma: Option<f64>,
 }
 
 impl Accuracy {
-    /// How far a walk is from the truth of its recording; none if nobody knows it.
+    /// The accuracy relative to the truth of the recording; `None` if that is not known.
     pub fn of(recording: &Recording, walk: &Walk) -> Option<Self> {
         match &recording.log.truth {
             _ if !recording.footprints.is_empty() => {
@@ -38,7 +37,7 @@ impl Accuracy {
         }
     }
 
-    /// Names and values for people.
+    /// The names and values as text.
     pub fn in_words(&self) -> [(&'static str, String); 5] {
         let percent = |value: Option<f64>| match value {
             Some(value) => format!("{value:+.2} %"),
@@ -54,8 +53,7 @@ impl Accuracy {
     }
 }
 
-/// Compares with measured footprints: positions at their times, the path length with the line
-/// through them.
+/// Compares with measured footprints: positions at their times, and the path length with that of the line through them.
 pub fn against_footprints(walk: &Walk, footprints: &[Footprint]) -> Accuracy {
     let truth: Vec<_> = footprints.iter().map(|footprint| footprint.position).collect();
     let times: Vec<_> = footprints.iter().map(|footprint| footprint.time_us).collect();
@@ -64,9 +62,9 @@ pub fn against_footprints(walk: &Walk, footprints: &[Footprint]) -> Accuracy {
 
 /// Compares with a truth that is known at every sample.
 ///
-/// The sensor's true arc is longer than the way walked, so the true path length is taken from
-/// stance to stance as well: along the true positions at the start and at the ends of our own
-/// strides. Strides that the tracker missed therefore shorten both.
+/// The sensor's true arc is longer than the distance walked, so the true path length is also taken from stance to
+/// stance: along the true positions at the start and at the ends of our own strides. Strides that the tracker missed
+/// therefore shorten both.
 pub fn against_truth(walk: &Walk, truth: &[TrackPoint]) -> Accuracy {
     let start = truth.first().map(|point| point.time_us);
     let stances = start.into_iter().chain(walk.strides.iter().map(|stride| stride.time_us));
@@ -101,7 +99,7 @@ mod tests {
     use super::*;
     use kestirim_replay::pedestrian::Stride;
 
-    /// A walk straight ahead along y, 1 m a second, one stride a second, `stretch` times too long.
+    /// A walk straight ahead along y at 1 m/s with one stride per second, lengthened by the factor `stretch`.
     fn straight(stretch: f64) -> Walk {
         let position = |i: u64| [0.0, i as f64 * stretch, 0.0];
         let stride = |i| Stride {

@@ -1,4 +1,4 @@
-//! What the positions and turns of a log show of the sensor.
+//! Calibration of the sensor from the positions and turns of a log.
 
 use std::ops::Range;
 
@@ -13,24 +13,24 @@ use crate::metrics::STANDARD_GRAVITY;
 use crate::systems::pedestrian::Sample;
 use crate::systems::pedestrian::recording::calibration::Sigmas;
 
-/// A position is held still for so long at least, s, without the moments in which a hand lets go.
+/// The minimum time that a position is held still, without the moments in which a hand lets go (s).
 pub(super) const SHORTEST_S: f64 = 1.0;
-/// So long a person is asked to hold it, s.
+/// The time for which a person is asked to hold a position (s).
 pub(super) const HOLD_S: f64 = 2.0;
-/// Longer turns are left out, s: meanwhile the bias wanders.
+/// The longest turn that is used (s), as the bias drifts meanwhile.
 const LONGEST_TURN_S: f64 = 20.0;
-/// Positions that are looked at; others are left out.
+/// The maximum number of positions that are used.
 const MOST_POSES: usize = 256;
-/// What a consumer accelerometer's mean is off by from one position to another, m/s²: a mg.
+/// The error of a consumer accelerometer's mean from one position to another, in m/s²: one mg.
 const POSE_NOISE: f64 = 0.01;
-/// The same of a gyroscope's, rad/s: 0.03 °/s.
+/// The error of a consumer gyroscope's mean from one position to another, in rad/s: 0.03 °/s.
 const RATE_NOISE: f64 = 0.0005;
-/// What a turn is off by beside scale and misalignment, rad: 0.2°.
+/// The error of a turn apart from scale and misalignment, in rad: 0.2°.
 const TURN_NOISE: f64 = 0.003;
-/// How often the turns are integrated: each time a hundredth is left of what was wrong.
+/// The number of times that the turns are integrated: each pass leaves a hundredth of the error.
 const PASSES: usize = 4;
 
-/// What was found.
+/// The result of a calibration.
 #[derive(Debug, Clone)]
 pub(super) struct Found {
     pub(super) calibration: Calibration<f64>,
@@ -38,17 +38,17 @@ pub(super) struct Found {
     pub(super) poses: usize,
     pub(super) turns: usize,
     pub(super) accelerometer: AccelerometerModel,
-    /// None if the turns tell nothing but the bias.
+    /// The model of the gyroscope; `None` if the turns determine only the bias.
     pub(super) gyroscope: Option<GyroscopeModel>,
-    /// How far corrected positions are from gravity, m/s².
+    /// The deviation of corrected positions from gravity (m/s²).
     pub(super) residual: f64,
-    /// How far corrected turns carry gravity astray, rad.
+    /// The error of the direction of gravity after corrected turns (rad).
     pub(super) astray: Option<f64>,
-    /// Sides that were not shown.
+    /// The sides that were not shown.
     pub(super) missing: Vec<Side>,
 }
 
-/// Why nothing was found, and the sides that were not shown.
+/// The reason why there is no calibration, and the sides that were not shown.
 #[derive(Debug, Clone)]
 pub(super) struct Refusal {
     pub(super) error: Error,
@@ -56,12 +56,12 @@ pub(super) struct Refusal {
     pub(super) missing: Vec<Side>,
 }
 
-/// Looks for positions and turns, and for what they tell.
+/// Finds the positions and turns in a log, and calibrates the sensor from them.
 pub(super) fn find(samples: &[Sample]) -> Result<Found, Refusal> {
     let stands = stands(samples, SHORTEST_S);
     let mut poses = Poses::<f64, MOST_POSES>::new();
     for stand in stands.iter().take(MOST_POSES) {
-        // What was measured is finite, and shows gravity.
+        // The measurements are finite and show gravity.
         let _ = pose(&samples[stand.samples.clone()]).and_then(|pose| poses.add(pose));
     }
     let missing: Vec<_> = poses.missing().collect();
@@ -101,7 +101,7 @@ fn pose(samples: &[Sample]) -> Result<Pose<f64>, Error> {
     Ok(pose)
 }
 
-/// The gyroscope, if the turns tell it, and how many of them there are.
+/// The fit of the gyroscope, if the turns determine it, and the number of turns.
 fn turned(
     samples: &[Sample],
     stands: &[Stand],
@@ -126,7 +126,7 @@ fn turned(
     result
 }
 
-/// Adds the turn between two stands, if it was seen whole.
+/// Adds the turn between two stands, if all of it was recorded.
 fn add(
     gyroscope: &mut Gyroscope<f64>,
     triad: Triad<f64>,
@@ -153,7 +153,8 @@ fn add(
     gyroscope.add(&turn, &force(&from.samples)?, &force(&to.samples)?).ok()
 }
 
-/// From middle to middle: a hand that settles within a stand is seen by both sensors.
+/// The middle of a stand. Turns are taken from middle to middle, as a hand that settles within a stand is seen by both
+/// sensors.
 fn middle(range: &Range<usize>) -> usize {
     range.start.midpoint(range.end)
 }

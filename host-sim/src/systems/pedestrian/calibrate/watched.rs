@@ -1,5 +1,4 @@
-//! The positions of a calibration, looked at while they are shown: which are missing, what to do next, and the file at the
-//! end.
+//! A calibration followed while it is recorded: which positions are missing, what to do next, and the file at the end.
 
 use std::path::PathBuf;
 
@@ -14,14 +13,15 @@ use crate::systems::pedestrian::Sample;
 use crate::systems::pedestrian::recording::calibration;
 use crate::{Error, output};
 
-/// So much of a stream is looked at, samples: half an hour at 500 Hz.
+/// The maximum number of samples that are used: half an hour at 500 Hz.
 const MOST_SAMPLES: usize = 900_000;
-/// It is looked at as often, s, but less often the more there is.
+/// The minimum interval between two evaluations (s), which grows with the number of samples.
 const LOOK_S: f64 = 0.25;
-/// A stand that reaches this near to the last sample still goes on, s: its end is cut off.
+/// The time from the end of a stand to the last sample up to which it counts as still going on (s), as its end is cut
+/// off.
 const GOES_ON_S: f64 = 0.5;
 
-/// Where the calibration goes.
+/// The plan of a calibration, with the path of its file.
 #[derive(Debug)]
 pub(super) struct Watching {
     pub(super) to: PathBuf,
@@ -34,20 +34,20 @@ impl Plan for Watching {
     }
 }
 
-/// What was shown so far.
+/// The samples so far and their evaluation.
 #[derive(Debug)]
 struct Watch {
     to: PathBuf,
     samples: Vec<Sample>,
-    /// How many of them were looked at.
+    /// The number of samples at the last evaluation.
     looked_at: usize,
     seen: Seen,
 }
 
-/// What there is to see of it.
+/// The evaluation of the samples so far.
 #[derive(Debug, Default)]
 struct Seen {
-    /// How long the sensor is held by now, s; none while it moves.
+    /// The time for which the sensor has been held still (s); `None` while it moves.
     held_s: Option<f64>,
     found: Option<Result<Found, Refusal>>,
 }
@@ -77,7 +77,7 @@ impl Seen {
         }
     }
 
-    /// What to do next.
+    /// The instruction what to do next.
     fn advice(&self) -> String {
         if self.poses() == 0 {
             return format!(
@@ -173,7 +173,7 @@ impl Online for Watch {
 mod tests {
     use super::*;
 
-    /// Held for 3 s with each of these axes up, then turned within a second.
+    /// Samples of a sensor held for 3 s with each of these axes up, and turned within a second in between.
     fn shown(ups: &[(usize, f64)]) -> Vec<Imu> {
         let axes = |(axis, sign): (usize, f64)| {
             let mut up = [0.0; 3];
@@ -218,7 +218,7 @@ mod tests {
         for (place, sample) in samples.iter().enumerate() {
             watch.take(&(*sample).into());
             watch.settle();
-            // In the middle of each position, and while the next is sought.
+            // In the middle of each position, and during the turn to the next one.
             if place % 400 == 180 || place % 400 == 398 {
                 told.push(fact(watch.as_ref(), "what to do"));
             }

@@ -1,4 +1,4 @@
-//! How the foot is turned, over time.
+//! Figures of the attitude of the foot.
 
 use kestirim_replay::pedestrian::{Moment, Trace};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -7,36 +7,37 @@ use super::{COLOURS, seconds};
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::systems::pedestrian::strides::stances;
 
-/// How the foot is turned with respect to how it stood at first: however the sensor is mounted, a foot that stands flat
-/// and points as at the start has no roll, pitch and yaw.
+/// The attitude of the foot relative to its first stance: however the sensor is mounted, a foot that is flat and points
+/// as at the start has zero roll, pitch and yaw.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Foot<'a> {
     trace: &'a Trace,
-    /// From the foot to the sensor on it.
+    /// The rotation from the foot to the sensor on it.
     mounted: UnitQuaternion<f64>,
 }
 
 impl<'a> Foot<'a> {
     pub(super) fn of(trace: &'a Trace) -> Self {
-        // In the middle of the first stance the gravity is known, and the heel not yet on its way up.
+        // In the middle of the first stance gravity is known, and the heel has not begun to rise.
         let first = stances(trace).first().map(|[from, to]| usize::midpoint(*from, *to));
         let first = first.and_then(|place| trace.moments.get(place));
         let mounted = first.map_or_else(UnitQuaternion::identity, |it| attitude(it).inverse());
         Self { trace, mounted }
     }
 
-    /// From the foot, x ahead, y to the left, z up, to the room, at a sample.
+    /// The rotation from the foot (x ahead, y to the left, z up) to the room at a sample.
     pub(super) fn attitude(&self, place: usize) -> Option<UnitQuaternion<f64>> {
         let (moment, point) = (self.trace.moments.get(place)?, self.trace.walk.track.get(place)?);
         let turned = attitude(moment) * self.mounted;
-        // A path that was turned back step by step takes the foot with it.
+        // A gradual correction of the path's heading also rotates the foot.
         let Some(rate) = self.trace.walk.heading_rate else { return Some(turned) };
         let begin_us = self.trace.walk.track.first()?.time_us;
         let angle = -rate * (seconds(point.time_us) - seconds(begin_us));
         Some(UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle) * turned)
     }
 
-    /// Roll, pitch and yaw of all samples, °; pitch is positive with the toes up. Where the yaw passes ±180° there is a gap.
+    /// The roll, pitch and yaw of all samples (°); pitch is positive with the toes up. There is a gap where the yaw
+    /// passes ±180°.
     fn angles_deg(&self) -> [Vec<f64>; 3] {
         let (mut angles, mut before) = ([const { Vec::new() }; 3], 0.0_f64);
         for attitude in (0..self.trace.moments.len()).filter_map(|place| self.attitude(place)) {
@@ -57,7 +58,7 @@ fn attitude(moment: &Moment) -> UnitQuaternion<f64> {
     UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z))
 }
 
-/// Roll, pitch and yaw over time, and when the foot stood.
+/// The roll, pitch and yaw over time, with the stances marked.
 pub(super) fn draw(foot: &Foot<'_>) -> Figure {
     let track = &foot.trace.walk.track;
     let angles = foot.angles_deg();
@@ -77,7 +78,7 @@ pub(super) fn draw(foot: &Foot<'_>) -> Figure {
         .with(standing(foot.trace, lowest - 15.0))
 }
 
-/// A bar a stance.
+/// A bar for each stance.
 fn standing(trace: &Trace, height: f64) -> Series {
     let (mut x, mut y) = (Vec::new(), Vec::new());
     for ends in stances(trace) {

@@ -1,4 +1,4 @@
-//! What stands on the plan beside the path: turns, stops, and how uncertain it is.
+//! Markers on the plan beside the path: turns, stops and uncertainties.
 
 use std::f64::consts::TAU;
 
@@ -6,14 +6,14 @@ use super::{Placed, seconds};
 use crate::figure::{Colour, Mark, Series};
 use crate::systems::pedestrian::strides::{stops, turns};
 
-/// More ellipses than these hide the path.
+/// The maximum number of ellipses: more would hide the path.
 const MOST_ELLIPSES: usize = 24;
-/// Labels of more turns than these lie on each other.
+/// The maximum number of turns that are labelled: labels of more would overlap.
 const MOST_LABELS: usize = 12;
-/// Corners of an ellipse.
+/// The number of corners of an ellipse.
 const CORNERS: u32 = 24;
 
-/// Turns and stops of a walk, and ellipses of a standard deviation.
+/// The turns and stops of a walk, and ellipses of one standard deviation.
 pub(super) fn on_plan(ours: &Placed<'_>) -> [Series; 3] {
     let turns = turns(&ours.trace.walk);
     let are_few = turns.len() <= MOST_LABELS;
@@ -30,7 +30,7 @@ pub(super) fn on_plan(ours: &Placed<'_>) -> [Series; 3] {
     ]
 }
 
-/// Labelled places. The gap behind each keeps the cursor from standing at one while the foot is elsewhere.
+/// Labelled positions. The gap after each keeps the cursor from selecting one while the foot is elsewhere.
 fn marks(
     name: &str,
     ours: &Placed<'_>,
@@ -45,11 +45,11 @@ fn marks(
     Series::points(name, places).timed(times).labelled(labels)
 }
 
-/// One standard deviation of x and y, at strides all along the walk.
+/// Ellipses of one standard deviation of x and y, at strides spread over the walk.
 fn ellipses(ours: &Placed<'_>) -> Series {
     let strides = &ours.trace.walk.strides;
     let step = strides.len().div_ceil(MOST_ELLIPSES).max(1);
-    // From the last one backwards: that is the one that is asked for most.
+    // Counted backwards, so that the last one, the most important, is included.
     let mut shown: Vec<_> = strides.iter().rev().step_by(step).collect();
     shown.reverse();
     let corners = shown.iter().flat_map(|stride| {

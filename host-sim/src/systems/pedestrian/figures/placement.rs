@@ -1,23 +1,22 @@
-//! A track laid onto a plan, for the eye: an inertial tracker knows neither where it starts nor which way it
-//! looks.
+//! Alignment of a track with a plan for display: an inertial tracker knows neither its start nor its initial heading.
 
 use kestirim_replay::pedestrian::{TrackPoint, position_at};
 
 use crate::metrics::best_turn;
 
-/// How the frame of a track lies in that of a truth.
+/// The transformation from the frame of a track to that of a truth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Placement {
-    /// Where the track has the place that truth begins at, m.
+    /// The position in the track at the time at which the truth begins (m).
     ours: [f64; 2],
-    /// That place, m.
+    /// The true position at that time (m).
     truth: [f64; 2],
-    /// Sine and cosine of the turn from the track onto the truth.
+    /// The sine and cosine of the rotation from the track to the truth.
     turn: (f64, f64),
 }
 
 impl Placement {
-    /// The placement by which errors are measured; none changes anything if no truth is known.
+    /// The alignment by which errors are measured; the identity if no truth is known.
     pub fn of(track: &[TrackPoint], truth: &[TrackPoint]) -> Self {
         let ours: Vec<_> = truth
             .iter()
@@ -29,19 +28,19 @@ impl Placement {
         Self { ours: first(&ours), truth: first(&truth), turn: best_turn(&ours, &truth).sin_cos() }
     }
 
-    /// A point of the track on the plan.
+    /// Transforms a point of the track to the plan.
     pub fn onto_plan(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [x, y] = self.turned([x - self.ours[0], y - self.ours[1]]);
         [x + self.truth[0], y + self.truth[1]]
     }
 
-    /// A direction, such as a velocity, on the plan.
+    /// Rotates a direction, such as a velocity, to the plan.
     pub fn turned(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = self.turn;
         [cos * x - sin * y, sin * x + cos * y]
     }
 
-    /// A point of the plan in the frame of the track.
+    /// Transforms a point of the plan to the frame of the track.
     pub fn from_plan(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let ((sin, cos), [x, y]) = (self.turn, [x - self.truth[0], y - self.truth[1]]);
         [cos * x + sin * y + self.ours[0], cos * y - sin * x + self.ours[1]]

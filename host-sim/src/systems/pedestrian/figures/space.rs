@@ -1,4 +1,4 @@
-//! The path in space, as it is seen from a fixed place far away.
+//! The path in space, in parallel projection.
 
 use kestirim_replay::pedestrian::TrackPoint;
 use nalgebra::Vector3;
@@ -7,22 +7,22 @@ use super::attitude::Foot;
 use super::{Placed, is_continuous, seconds};
 use crate::figure::{Colour, Figure, Mark, Series};
 
-/// Where it is seen from: anticlockwise from x, and above the floor.
+/// The direction of view: the azimuth anticlockwise from x, and the elevation above the floor.
 const AZIMUTH_DEG: f64 = -60.0;
 const ELEVATION_DEG: f64 = 30.0;
 
-/// An axis of the foot is this share of the path's extent, and no shorter than a foot is wide, m.
+/// The length of the foot's axes as a share of the path's extent, and its minimum, the width of a foot (m).
 const AXIS: (f64, f64) = (0.04, 0.1);
 const AXES: [&str; 3] = ["the foot's x, ahead", "the foot's y, left", "the foot's z, up"];
 
-/// The picture of a point.
+/// Projects a point.
 fn seen([x, y, z]: [f64; 3]) -> [f64; 2] {
     let (sin_a, cos_a) = AZIMUTH_DEG.to_radians().sin_cos();
     let (sin_e, cos_e) = ELEVATION_DEG.to_radians().sin_cos();
     [cos_a * y - sin_a * x, cos_e * z - sin_e * (cos_a * x + sin_a * y)]
 }
 
-/// The path, how the foot stood after each stride, and the true path if its heights are known.
+/// The path, the attitude of the foot after each stride, and the true path if its heights are known.
 pub(super) fn draw(ours: &Placed<'_>, foot: &Foot<'_>, truth: &[TrackPoint]) -> Figure {
     let track = &ours.trace.walk.track;
     let places: Vec<_> = track.iter().map(|point| ours.in_room(point.position)).collect();
@@ -46,7 +46,7 @@ pub(super) fn draw(ours: &Placed<'_>, foot: &Foot<'_>, truth: &[TrackPoint]) -> 
         .with_all(axes(ours, foot, length(&places)))
 }
 
-/// How long the axes are drawn, m.
+/// The length of the foot's axes in the figure (m).
 fn length(places: &[[f64; 3]]) -> f64 {
     let extent = |axis: usize| {
         let values = places.iter().filter_map(|place| place.get(axis));
@@ -59,7 +59,7 @@ fn length(places: &[[f64; 3]]) -> f64 {
     (share * extent(0).max(extent(1))).max(least)
 }
 
-/// The axes of the foot at each stance that a stride led to.
+/// The axes of the foot at the stance after each stride.
 fn axes(ours: &Placed<'_>, foot: &Foot<'_>, length_m: f64) -> [Series; 3] {
     let walk = &ours.trace.walk;
     let stances: Vec<_> = walk
@@ -92,7 +92,7 @@ mod tests {
     fn up_is_up_and_lengths_across_the_view_are_true() {
         let [x, y] = seen([0.0, 0.0, 1.0]);
         assert!(x.abs() < 1e-12 && (y - 30_f64.to_radians().cos()).abs() < 1e-12);
-        // At right angles to where it is seen from.
+        // A point perpendicular to the direction of view.
         let (sin, cos) = 30_f64.to_radians().sin_cos();
         let [x, y] = seen([2.0 * cos, 2.0 * sin, 0.0]);
         assert!((x - 2.0).abs() < 1e-12 && y.abs() < 1e-12, "{x}, {y}");

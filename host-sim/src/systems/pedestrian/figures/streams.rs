@@ -7,8 +7,8 @@ use super::seconds;
 use crate::stream::Stream;
 use crate::systems::pedestrian::Sample;
 
-/// What the sensor said, what the tracker makes of it, and the truth as far as it is known, turned onto the
-/// estimate: that has the frame in which `--track` writes it.
+/// The sensor data, the track, and the truth as far as it is known, rotated onto the estimate, whose frame is the one
+/// in which `--track` writes it.
 pub fn streams(samples: &[Sample], trace: &Trace, truth: &[TrackPoint]) -> Vec<Stream> {
     let imu = samples.iter().map(|sample| {
         let values = [sample.specific_force, sample.angular_rate];

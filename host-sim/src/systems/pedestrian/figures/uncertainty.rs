@@ -1,4 +1,4 @@
-//! Height over time, and how far the position can be relied upon.
+//! Figures of the height over time, and of the uncertainty of the position.
 
 use kestirim_replay::pedestrian::{TrackPoint, position_at};
 
@@ -6,7 +6,7 @@ use super::{Placed, is_continuous, seconds};
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::distance;
 
-/// Standard deviations of the position over time, and the true error beside them.
+/// The standard deviations of the position over time, beside the true error.
 pub(super) fn draw(ours: &Placed<'_>, truth: &[TrackPoint]) -> Figure {
     let walk = &ours.trace.walk;
     let begin = walk.track.first().map(|point| point.time_us);
@@ -29,7 +29,7 @@ pub(super) fn draw(ours: &Placed<'_>, truth: &[TrackPoint]) -> Figure {
         .with(steps("height", |[.., z]| *z).coloured(Colour::Other(2)))
 }
 
-/// How far off the path is horizontally; none without truth.
+/// The horizontal error of the path over time; `None` without a truth.
 fn error(ours: &Placed<'_>, truth: &[TrackPoint]) -> Option<Series> {
     let errors = truth.iter().filter_map(|point| {
         let [x, y, _] = position_at(&ours.trace.walk.track, point.time_us)?;
@@ -42,7 +42,7 @@ fn error(ours: &Placed<'_>, truth: &[TrackPoint]) -> Option<Series> {
     (!truth.is_empty()).then_some(error)
 }
 
-/// The height over time, one standard deviation about it, and the truth if that has heights.
+/// The height over time, with a band of one standard deviation, and the truth if it has heights.
 pub(super) fn height(ours: &Placed<'_>, truth: &[TrackPoint]) -> Figure {
     let walk = &ours.trace.walk;
     let line = |points: &[TrackPoint]| -> (Vec<f64>, Vec<f64>) {

@@ -1,8 +1,8 @@
 //! `host-sim run pedestrian`: the paper's experiment on synthetic walks.
 //!
-//! Each walk is rendered to a log file in the paper's format, with the rounding that comes with
-//! it, read back and tracked twice: by the method of the paper and by ours. The same walks with
-//! the same sensors are logged at both rates, so that the rate is the only difference.
+//! Each walk is rendered to a log file in the paper's format, including its rounding, read back and tracked twice: by
+//! the method of the paper and by ours. The same walks with the same sensors are logged at both rates, so that the rate
+//! is the only difference.
 
 use std::fmt;
 
@@ -18,13 +18,13 @@ use crate::systems::pedestrian::account::accuracy::against_footprints;
 use crate::systems::pedestrian::recording::{Recording, Walked};
 use crate::{Error, output};
 
-/// Walks at each rate in the paper.
+/// The number of walks at each rate in the paper.
 pub(super) const WALKS: u64 = 7;
-/// Repetitions of all walks that take a few seconds.
+/// The default number of repetitions of all walks, which takes a few seconds.
 const DEFAULT_TRIALS: u64 = 20;
 const RATES: [(u32, PathLengths); 2] = [(50, FIFTY_HZ), (100, HUNDRED_HZ)];
 
-/// Result of the experiment.
+/// The results of the experiment.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
     system: &'static str,
@@ -41,29 +41,29 @@ pub(super) struct Row {
     pub(super) published: PathLengths,
     pub(super) paper_method: Summary,
     pub(super) ours: Summary,
-    /// No bound on the error is known for this sensor and route.
+    /// The theoretical bound: none is known for this sensor and route.
     limit: Option<f64>,
 }
 
-/// What all walks at one rate have in common.
+/// Statistics of all walks at one rate.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Summary {
     walks: usize,
     pub(super) mean_relative_error_percent: f64,
     worst_relative_error_percent: f64,
-    /// Standard deviation of the path length, m.
+    /// The standard deviation of the path length (m).
     pub(super) sigma_m: f64,
     pub(super) median_rmse_m: f64,
     pub(super) median_final_error_m: f64,
-    /// Length of every path, m, in the order of the walks; the chapter's.
+    /// The length of every path (m), in the order of the walks, for the chapter.
     #[serde(skip)]
     pub(super) lengths_m: Vec<f64>,
 }
 
-/// The walks, at each rate.
+/// The trials: all walks at each rate.
 ///
 /// # Errors
-/// [`Error::Usage`] for a number type that the tracker is not built for.
+/// [`Error::Usage`] for a number type that the tracker does not support.
 pub fn trials(options: RunOptions) -> Result<Vec<Block>, Error> {
     let default = Options::default();
     let scalar = choose_scalar("pedestrian", options.scalar, &ScalarKind::ALL, default.scalar)?;
@@ -81,10 +81,10 @@ pub fn trials(options: RunOptions) -> Result<Vec<Block>, Error> {
     Ok(RATES.map(block).into())
 }
 
-/// What came of them; the same options give the same report at any number of threads.
+/// Evaluates the samples of the trials; the same options give the same report with any number of threads.
 ///
 /// # Errors
-/// As [`trials`].
+/// Those of [`trials`].
 pub fn report(options: RunOptions, samples: &[Samples]) -> Result<Report, Error> {
     let default = Options::default().scalar;
     let scalar = choose_scalar("pedestrian", options.scalar, &ScalarKind::ALL, default)?;
@@ -102,7 +102,8 @@ pub fn report(options: RunOptions, samples: &[Samples]) -> Result<Report, Error>
     })
 }
 
-/// Walks once, logs it, and tracks the log by each method: the length of the path, its RMSE, and by how much its end is off, m.
+/// Generates and logs a walk, and tracks the log by each method: the length of the path, its RMSE, and the error at its
+/// end (m).
 fn track(
     seed: u64,
     index: u64,
@@ -119,13 +120,13 @@ fn track(
     Ok([outcome(paper)?, outcome(ours)?])
 }
 
-/// A complaint that the tracker refuses a synthetic walk.
+/// The error that the tracker refuses a synthetic walk.
 pub(super) fn refused(index: u64, error: &pedestrian::Error) -> Error {
     Error::Usage(format!("synthetic walk {index}: {error}"))
 }
 
 impl Summary {
-    /// Of the three columns of a method.
+    /// The statistics of a method from its three columns.
     fn of(walks: &Samples, first: usize) -> Self {
         let lengths_m = walks.column(first);
         let errors: Vec<_> = lengths_m.iter().copied().map(error_percent).collect();
@@ -141,7 +142,7 @@ impl Summary {
     }
 }
 
-/// Error of a path's length on the route, %, without its sign.
+/// The absolute error of a path's length on the route (%).
 pub(super) fn error_percent(length_m: f64) -> f64 {
     100.0 * (length_m / ROUTE_M - 1.0).abs()
 }

@@ -1,4 +1,4 @@
-//! The paper: what it prints, its experiment, and its part of the report.
+//! The paper: its published results, its experiment, and its part of the report.
 
 pub mod chapter;
 pub mod experiment;

@@ -1,34 +1,34 @@
-//! What the paper prints, with the table it stands in.
+//! Results published in the paper, each with its table.
 
 use serde::Serialize;
 
-/// Walked path lengths of one sampling rate, from Aydın and Erken, *Mühendislik Bilimleri ve
-/// Tasarım Dergisi* (JESD), doi:10.21923/jesd.450256.
+/// Path lengths of walks at one sampling rate, from Aydın and Erken, *Mühendislik Bilimleri ve Tasarım Dergisi* (JESD),
+/// doi:10.21923/jesd.450256.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PathLengths {
-    /// Table of the paper.
+    /// The table of the paper.
     pub source: &'static str,
-    /// Length of each walk as the paper's tracker measured it, m.
+    /// The length of each walk as measured by the paper's tracker (m).
     pub walks_m: [f64; 7],
-    /// Printed mean of the absolute relative errors, %.
+    /// The printed mean of the absolute relative errors (%).
     pub mean_relative_error_percent: f64,
-    /// Printed standard deviation, m; it is that of the walked lengths (n − 1), not of the errors.
+    /// The printed standard deviation (m); it is that of the path lengths (n − 1), not of the errors.
     pub sigma_m: f64,
 }
 
-/// Length of the paper's route through a flat, m.
+/// The length of the paper's route through a flat (m).
 pub const ROUTE_M: f64 = 12.60;
 
-/// Its Table 1: lines of the log, time in ms, 3 × g, 3 × °/s.
+/// Lines of the log from the paper's Table 1: time in ms, 3 × g, 3 × °/s.
 pub const LOG_LINES: [&str; 3] = [
     "1490 -0.06 -0.21 -0.99 2.44 2.90 2.13",
     "1499 -0.05 -0.21 -0.98 3.41 2.35 1.52",
     "1508 -0.04 -0.22 -0.98 2.96 1.68 1.19",
 ];
-/// Where Fig. 16 shows the walker after 15 s: x and y, m; z is about 0.
+/// The position of the walker after 15 s in the paper's Fig. 16: x and y (m); z is about 0.
 pub const AFTER_15_S: [f64; 2] = [6.0, 3.0];
 
-/// Seven walks logged at 50 Hz.
+/// The seven walks logged at 50 Hz.
 pub const FIFTY_HZ: PathLengths = PathLengths {
     source: "Table 3",
     walks_m: [12.53, 13.37, 11.96, 13.12, 13.65, 12.89, 13.44],
@@ -36,7 +36,7 @@ pub const FIFTY_HZ: PathLengths = PathLengths {
     sigma_m: 0.589,
 };
 
-/// Seven walks logged at 100 Hz.
+/// The seven walks logged at 100 Hz.
 pub const HUNDRED_HZ: PathLengths = PathLengths {
     source: "Table 4",
     walks_m: [12.74, 14.35, 12.87, 14.48, 14.63, 14.89, 14.58],

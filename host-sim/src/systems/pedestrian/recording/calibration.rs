@@ -1,4 +1,4 @@
-//! What an inertial sensor measures wrong: a file of parameters.
+//! Calibrations of inertial sensors, as files of parameters.
 
 use std::path::Path;
 
@@ -10,31 +10,31 @@ use crate::systems::pedestrian::Sample;
 use crate::text::printable;
 use crate::{Error, output, table};
 
-/// Beyond any sensor that works: offset (m/s²), bias (rad/s), and how far a matrix is from that of a perfect one.
+/// The largest plausible offset (m/s²), bias (rad/s), and deviation of a matrix from the identity.
 const FARTHEST: [f64; 3] = [20.0, 2.0, 1.0];
 const AXES: [&str; 3] = ["x", "y", "z"];
-/// The sensors' names, what their offset is called, and its unit.
+/// The names of the sensors, the name of their offset, and its unit.
 const SENSORS: [(&str, &str, &str); 2] = [("acc", "offset", "m/s²"), ("gyro", "bias", "rad/s")];
 
 /// A number of a calibration.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Parameter {
-    /// `acc_offset_x`, `acc_xy` (row x, column y), `gyro_bias_x`, `gyro_xy`.
+    /// The name: `acc_offset_x`, `acc_xy` (row x, column y), `gyro_bias_x`, `gyro_xy`.
     pub name: String,
-    /// It.
+    /// The value of the parameter.
     pub value: f64,
-    /// Its standard deviation; none if it was not found and is that of a perfect sensor.
+    /// The standard deviation; `None` if the parameter was not determined and has the value of a perfect sensor.
     pub sigma: Option<f64>,
-    /// Of both; none of a matrix.
+    /// The unit of value and standard deviation; empty for a matrix.
     pub unit: &'static str,
 }
 
-/// Standard deviations of a triad.
+/// The standard deviations of a triad's parameters.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Sigmas {
-    /// Of the offset.
+    /// The standard deviations of the offset.
     pub offset: [Option<f64>; 3],
-    /// Of the matrix, row by row.
+    /// The standard deviations of the matrix, row by row.
     pub matrix: [[Option<f64>; 3]; 3],
 }
 
@@ -78,7 +78,7 @@ pub fn write(path: &Path, parameters: &[Parameter]) -> Result<(), Error> {
 /// Reads such a file: every parameter once, in any order.
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read(path: &Path) -> Result<Calibration<f64>, Error> {
     let names = parameters(&Calibration::identity(), [Sigmas::default(); 2]);
     let mut found = vec![None; names.len()];
@@ -126,14 +126,14 @@ pub fn read(path: &Path) -> Result<Calibration<f64>, Error> {
     Ok(Calibration { accelerometer: triad(), gyroscope: triad() })
 }
 
-/// A sample as it should have been measured.
+/// A sample corrected by a calibration.
 pub fn corrected(calibration: &Calibration<f64>, sample: &Sample) -> Sample {
     let (force, rate) = calibration
         .apply(&SVector::from(sample.specific_force), &SVector::from(sample.angular_rate));
     Sample { specific_force: force.into(), angular_rate: rate.into(), ..*sample }
 }
 
-/// The same in firmware.
+/// The calibration in the form of firmware source.
 pub fn firmware(calibration: &Calibration<f64>) -> String {
     let numbers = |values: [f64; 3]| values.map(|value| format!("{:?}", value as f32)).join(", ");
     let triad = |name: &str, triad: &Triad<f64>| {

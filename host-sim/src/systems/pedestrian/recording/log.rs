@@ -1,4 +1,4 @@
-//! Recorded walks: text of any device, read by [`kestirim_import`], and the truth that may stand beside the sensor's
+//! Logs of walks: text of any device, read by [`kestirim_import`], and the truth that may be given beside the sensor's
 //! columns as `gt_x`, `gt_y`, `gt_z` (m; all three or none).
 
 use std::path::Path;
@@ -13,34 +13,34 @@ use crate::table::{FARTHEST_POSITION, MOST_NAMED, refused};
 use crate::text::{self, listed};
 
 const TRUTH_COLUMNS: [&str; 3] = ["gt_x", "gt_y", "gt_z"];
-/// A recorded walk.
+/// The contents of a log.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Log {
-    /// At least one sample; times never decrease.
+    /// The samples: at least one, with times that never decrease.
     pub samples: Vec<Sample>,
-    /// Where the sensor was at each sample, if the log says so.
+    /// The true position of the sensor at each sample, if the log has it.
     pub truth: Option<Vec<TrackPoint>>,
-    /// The magnetic field at each sample (body, in the log's unit, not a number where it was not measured), if the log has
+    /// The magnetic field at each sample (body frame, in the log's unit, NaN where it was not measured), if the log has
     /// one.
     pub field: Option<Vec<[f64; 3]>>,
-    /// What was concluded about columns and units, and from what.
+    /// The conclusions about columns and units, and what they are based on.
     pub import: Vec<String>,
-    /// What is suspicious but readable.
+    /// Warnings about readable but suspicious contents.
     pub warnings: Vec<String>,
 }
 
 impl Log {
-    /// Time of the first sample, µs.
+    /// The time of the first sample (µs).
     pub fn start_us(&self) -> u64 {
         self.samples.first().map_or(0, |sample| sample.time_us)
     }
 
-    /// Time of the last sample, µs.
+    /// The time of the last sample (µs).
     pub fn end_us(&self) -> u64 {
         self.samples.last().map_or(0, |sample| sample.time_us)
     }
 
-    /// From the first to the last sample, s.
+    /// The time from the first to the last sample (s).
     pub fn duration_s(&self) -> f64 {
         (self.end_us() - self.start_us()) as f64 / 1e6
     }
@@ -49,7 +49,7 @@ impl Log {
 /// Reads a log.
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read(path: &Path, options: &Options) -> Result<Log, Error> {
     parse(path, &text::bytes(path)?, options)
 }
@@ -57,7 +57,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Log, Error> {
 /// Reads the contents of the file `path`.
 ///
 /// # Errors
-/// As [`read`].
+/// Those of [`read`].
 pub fn parse(path: &Path, bytes: &[u8], options: &Options) -> Result<Log, Error> {
     let read = inertial::read(bytes, options).map_err(|error| refused(path, &error))?;
     let truth = truth(path, &read)?;
@@ -71,7 +71,7 @@ pub fn parse(path: &Path, bytes: &[u8], options: &Options) -> Result<Log, Error>
     })
 }
 
-/// A sentence that names the columns of numbers that are not used, if there are any.
+/// A sentence that lists unused numeric columns, if there are any.
 fn left_out(log: &Inertial) -> Option<String> {
     let field = log.magnetic_columns().unwrap_or_default();
     let names = log.other.iter().map(|(name, _)| name.as_str());
@@ -80,7 +80,7 @@ fn left_out(log: &Inertial) -> Option<String> {
     (!names.is_empty()).then(|| format!("columns that are not used: {names}"))
 }
 
-/// Where the sensor was, by the columns that say so.
+/// The true positions of the sensor, if the log has columns for them.
 fn truth(path: &Path, log: &Inertial) -> Result<Option<Vec<TrackPoint>>, Error> {
     let columns = TRUTH_COLUMNS.map(|name| log.column(name));
     if columns.iter().all(Option::is_none) {

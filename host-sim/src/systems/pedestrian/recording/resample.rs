@@ -1,10 +1,9 @@
-//! A slower log from a faster one, by averaging: no sample is dropped.
+//! Averaging of a log down to a lower rate: no sample is dropped.
 //!
-//! Time is cut into blocks of one slower period, counted from half a log period before the first
-//! sample so that jitter moves no sample over an edge. All samples of a block become one: the mean
-//! of their values at the mean of their times. A signal that grows linearly is therefore neither
-//! delayed nor advanced, whatever a time stamp means in the log. A block without samples, a gap,
-//! stays a gap. Truth is interpolated at the block's time.
+//! Time is divided into blocks of one period of the lower rate, counted from half a log period before the first sample
+//! so that jitter moves no sample across an edge. All samples of a block become one: the mean of their values at the
+//! mean of their times. A signal that grows linearly is therefore neither delayed nor advanced, whatever a timestamp
+//! means in the log. A block without samples, a gap, stays a gap. The truth is interpolated at the block's time.
 
 use kestirim_replay::pedestrian::{TrackPoint, position_at};
 
@@ -12,13 +11,13 @@ use super::log::Log;
 use crate::Error;
 use crate::systems::pedestrian::Sample;
 
-/// By how much a rate may exceed the log's own before it is refused: clocks are not exact.
+/// The factor by which a rate may exceed the log's own before it is refused: clocks are inexact.
 const RATE_TOLERANCE: f64 = 1.05;
 
 /// Averages a log down to `rate_hz`.
 ///
 /// # Errors
-/// [`Error::Usage`] if the log is slower than that, or the rate is no positive number.
+/// [`Error::Usage`] if the log's rate is lower, or `rate_hz` is not a positive number.
 pub fn average_down(log: &Log, rate_hz: f64) -> Result<Log, Error> {
     if !(rate_hz.is_finite() && rate_hz > 0.0) {
         return Err(Error::Usage(format!("--rate expects a positive number, found {rate_hz}")));
@@ -40,12 +39,12 @@ pub fn average_down(log: &Log, rate_hz: f64) -> Result<Log, Error> {
     Ok(Log { samples, truth, field, import, warnings })
 }
 
-/// The rate of a log, Hz; none of fewer than two samples.
+/// The rate of a log (Hz); `None` for fewer than two samples.
 pub fn rate_hz(samples: &[Sample]) -> Option<f64> {
     median_period_us(samples).map(|period_us| 1e6 / period_us)
 }
 
-/// Median time between samples, µs; none of fewer than two. Repeated times are one time.
+/// The median time between samples (µs); `None` for fewer than two. Repeated times count once.
 fn median_period_us(samples: &[Sample]) -> Option<f64> {
     let steps = samples.windows(2).map(|pair| (pair[1].time_us - pair[0].time_us) as f64);
     let steps: Vec<_> = steps.filter(|&step| step > 0.0).collect();
@@ -66,7 +65,7 @@ fn average(block: &[Sample]) -> Sample {
     }
 }
 
-/// The field's mean in each block: of the samples that have one.
+/// The mean of the field in each block, over the samples that have one.
 fn average_field(log: &Log, field: &[[f64; 3]], block: impl Fn(&Sample) -> u64) -> Vec<[f64; 3]> {
     let pairs: Vec<_> = log.samples.iter().zip(field).collect();
     let blocks = pairs.chunk_by(|(a, _), (b, _)| block(a) == block(b));
@@ -93,7 +92,7 @@ fn at_times_of(samples: &[Sample], truth: &[TrackPoint]) -> Vec<TrackPoint> {
 mod tests {
     use super::*;
 
-    /// A log in which every value grows by one a second.
+    /// A log in which every value grows by one per second.
     fn ramp(times_us: impl IntoIterator<Item = u64>) -> Log {
         let seconds = |time_us: u64| [time_us as f64 * 1e-6; 3];
         let sample = |time_us| Sample {

@@ -1,4 +1,4 @@
-//! Measured footprints: where the foot stood, and when.
+//! Measured footprints: the positions of the foot, with times.
 
 use std::path::Path;
 
@@ -7,16 +7,16 @@ use kestirim_replay::pedestrian::Footprint;
 use super::log::Log;
 use crate::{Error, output, table};
 
-/// How far beyond the ends of a log a footprint may lie, µs: a log that was averaged or rewritten
-/// in milliseconds ends a few samples early, while the foot stands.
+/// The time by which a footprint may lie beyond the ends of a log (µs): a log that was averaged or rewritten in
+/// milliseconds ends a few samples early, while the foot is stationary.
 const SLACK_US: u64 = 100_000;
 
-/// Reads footprints: CSV with columns `t,x,y` (s, m); others, such as `sample_index`, are ignored.
-/// They are joined to the log by `t`. Those outside its time are left out, with a warning: a log may have been cut.
+/// Reads footprints: CSV with columns `t,x,y` (s, m); others, such as `sample_index`, are ignored. They are matched to
+/// the log by `t`. Those outside its time are left out with a warning, as a log may have been cut.
 ///
 /// # Errors
-/// The file, the line, and what was expected there; also if fewer than two, or fewer than half, lie within the `log`: it belongs to
-/// another walk.
+/// An error that names the file, the line, and what was expected there; also if fewer than two footprints, or fewer
+/// than half, lie within the `log`, which then belongs to another walk.
 pub fn read(path: &Path, log: &Log) -> Result<Vec<Footprint>, Error> {
     let mut footprints: Vec<Footprint> = Vec::new();
     let mut beyond = 0_usize;
@@ -80,7 +80,7 @@ mod tests {
     fn footprints_are_read() {
         let footprints = read_text("sample_index,t,x,y\n0,0.5,1,2\n9,2.05,3,4\n").unwrap();
         assert_eq!(footprints[1], Footprint { time_us: 2_050_000, position: [3.0, 4.0] });
-        // Of a log that was cut.
+        // The footprints of a log that was cut.
         let cut = read_text("t,x,y\n0.5,1,2\n1,3,4\n3,9,9\n").unwrap();
         assert_eq!(cut.len(), 2);
     }

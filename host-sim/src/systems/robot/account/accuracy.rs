@@ -1,4 +1,4 @@
-//! How far positions are from the truth, in the plane.
+//! The horizontal accuracy of positions.
 
 use kestirim_replay::robot::{Course, Epoch, Trace};
 use serde::Serialize;
@@ -6,35 +6,36 @@ use serde::Serialize;
 use crate::metrics::{distance, error_over_sigma, mean, median, percentile, ratio_in_words, rms};
 use crate::systems::robot::recording::{Recording, Truth};
 
-/// Horizontal errors.
+/// Statistics of the horizontal errors.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Accuracy {
-    /// How many positions were compared.
+    /// The number of positions compared.
     pub positions: usize,
-    /// At how many times, or points, there is a truth but no position.
+    /// The number of times, or points, with a truth but no position.
     pub missed: usize,
-    /// Root mean square, m.
+    /// The root mean square error (m).
     pub rmse_m: f64,
-    /// Mean, m.
+    /// The mean error (m).
     pub mean_m: f64,
-    /// Median, m.
+    /// The median error (m).
     pub median_m: f64,
-    /// Below which 95 % are, m.
+    /// The 95th percentile of the errors (m).
     pub p95_m: f64,
-    /// Largest, m.
+    /// The largest error (m).
     pub max_m: f64,
-    /// Root mean square error over root mean square standard deviation; none of a tracker that knows none.
+    /// The root mean square error divided by the root mean square standard deviation; `None` for a tracker without
+    /// standard deviations.
     pub error_over_sigma: Option<f64>,
 }
 
 impl Accuracy {
-    /// How far what came out is from the truth: at every epoch of a moving tag, at the last of each point; none if
-    /// nobody knows it.
+    /// The accuracy of a recording's tracks: at every epoch of a moving tag, at the last of each point; `None` if the
+    /// truth is not known.
     pub fn of_recording(recording: &Recording, traces: &[Trace]) -> Option<Self> {
         Self::of_parts(recording, traces.iter().map(|trace| trace.epochs.as_slice()))
     }
 
-    /// The same of epochs of each part.
+    /// The accuracy of the epochs of each part of a recording.
     pub fn of_parts<'a>(
         recording: &Recording,
         parts: impl IntoIterator<Item = &'a [Epoch]>,
@@ -50,7 +51,7 @@ impl Accuracy {
         Self::of_epochs(&points)
     }
 
-    /// Compares epochs, if there are any, with true positions.
+    /// Compares epochs, where there are any, with true positions.
     fn of_epochs(points: &[(Option<&Epoch>, [f64; 2])]) -> Option<Self> {
         let pairs: Vec<_> = points
             .iter()
@@ -63,7 +64,7 @@ impl Accuracy {
         Some(Self { error_over_sigma: error_over_sigma(told), ..Self::of(&pairs)? })
     }
 
-    /// Compares pairs of positions, ours and true; none if there is nothing to compare.
+    /// Compares pairs of estimated and true positions; `None` if there is nothing to compare.
     pub fn of(pairs: &[(Option<[f64; 3]>, [f64; 2])]) -> Option<Self> {
         let found = pairs.iter().filter_map(|(ours, truth)| Some((ours.as_ref()?, truth)));
         let errors: Vec<f64> = found.map(|(&[x, y, _], &truth)| distance([x, y], truth)).collect();
@@ -82,7 +83,7 @@ impl Accuracy {
         })
     }
 
-    /// Names and values for people.
+    /// The names and values as text.
     pub fn in_words(&self) -> [(&'static str, String); 6] {
         let centimetres = |metres: f64| format!("{:.1} cm", 100.0 * metres);
         [

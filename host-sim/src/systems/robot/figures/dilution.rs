@@ -1,4 +1,4 @@
-//! Dilution of precision: over the room, and of the ranges that were used.
+//! Dilution of precision: over the room, and of the ranges in use.
 
 use kestirim_replay::robot::{Dimensions, Epoch, Event, Range, Reception, Setup, Trace};
 use kestirim_uwb_ranging::{dilution_of_precision, expected_range};
@@ -8,31 +8,33 @@ use super::plan::room;
 use crate::figure::{Colour, Figure, Grid, Mark, Series};
 use crate::metrics::median;
 
-/// Dilutions whose lines are drawn: in a room they are near the least that so many anchors can give, 2/√n in the plane.
+/// The dilutions for which contour lines are drawn: in a room they are near the minimum for n anchors, 2/√n in the
+/// plane.
 const LEVELS: [f64; 19] = [
     0.4, 0.5, 0.6, 0.65, 0.7, 0.75, 0.8, 0.9, 1.0, 1.05, 1.1, 1.15, 1.2, 1.3, 1.5, 2.0, 3.0, 5.0,
     10.0,
 ];
-/// Cells along the longer side of the room.
+/// The number of cells along the longer side of the room.
 const CELLS: usize = 60;
-/// So much of the anchors' longer side is looked at beyond them.
+/// The margin around the anchors, as a share of their longer side.
 const BEYOND: f64 = 0.15;
-/// A range is used for two rounds of the anchors, but no shorter and no longer than this, s: as the tracker has it.
+/// The minimum and maximum time for which a range counts as in use (s); in between it is two rounds of the anchors, as
+/// in the tracker.
 const FRESH_S: [f64; 2] = [1.0, 8.0];
 
-/// What is unknown beside the place in the plane.
+/// The unknowns besides the horizontal position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Unknowns {
-    /// The height, which else is given.
+    /// Whether the height is unknown rather than given.
     pub height: bool,
-    /// The tag's clock, of differences of distances.
+    /// Whether the tag's clock is unknown, as with differences of distances.
     pub clock: bool,
 }
 
-/// Horizontal dilution of precision: by how much the anchors' places magnify the error of a range into that of the place in the
-/// plane, √(Q₁₁ + Q₂₂) with Q = (HᵀH)⁻¹ of the directions H from the anchors to the tag, with a column of ones where the clock is
-/// unknown (Langley 1999, *Dilution of precision*, GPS World 10(5)). All ranges are taken to be equally good, and to have no common
-/// bias. None if the anchors do not determine the place.
+/// Horizontal dilution of precision: the factor by which the anchors' geometry magnifies the error of a range into that
+/// of the horizontal position, √(Q₁₁ + Q₂₂) with Q = (HᵀH)⁻¹ of the directions H from the anchors to the tag, with a
+/// column of ones if the clock is unknown (Langley 1999, *Dilution of precision*, GPS World 10(5)). All ranges are
+/// assumed to be equally accurate, without a common bias. `None` if the anchors do not determine the position.
 pub fn horizontal(
     place: [f64; 3],
     anchors: impl IntoIterator<Item = [f64; 3]>,
@@ -40,7 +42,7 @@ pub fn horizontal(
 ) -> Option<f64> {
     let direction = |anchor: [f64; 3]| expected_range(&place.into(), 0.0, &anchor.into()).direction;
     let mut rows: Vec<[f64; 3]> = anchors.into_iter().map(direction).collect();
-    // What else is unknown is eliminated: of each column remains what the others' do not tell.
+    // The other unknowns are eliminated: of each column only the part remains that is orthogonal to theirs.
     if unknowns.clock {
         let mean = [0, 1, 2]
             .map(|axis| rows.iter().map(|row| row[axis]).sum::<f64>() / rows.len().max(1) as f64);
@@ -66,7 +68,7 @@ pub fn horizontal(
 }
 
 impl Shown<'_> {
-    /// Dilution of precision over the anchors' area with all that answered, with the track over it.
+    /// The dilution of precision over the anchors' area, from all anchors that answered, with the track on top.
     pub fn dilution(&self, id: &str, setup: &Setup) -> Figure {
         let (anchors, unknowns) = (self.answered(setup), self.unknowns(setup));
         let known: Vec<_> =
@@ -75,7 +77,7 @@ impl Shown<'_> {
         let [x0, y0, x1, y1] = self.recording.anchors.rectangle();
         let margin = BEYOND * (x1 - x0).max(y1 - y0);
         let area = [x0 - margin, y0 - margin, x1 + margin, y1 + margin];
-        // Of the reciprocal, which is nothing where the dilution has no end.
+        // A grid of the reciprocal, which is zero where the dilution is infinite.
         let grid = Grid::new(area, CELLS, |[x, y]| {
             let dilution = horizontal([x, y, height], anchors.iter().copied(), unknowns);
             dilution.map_or(0.0, f64::recip)
@@ -92,7 +94,8 @@ impl Shown<'_> {
             .with(self.track("track", self.line()).coloured(Colour::Ours))
     }
 
-    /// Dilution of precision where the tag was found, of the anchors whose ranges were in use, and of all that answered.
+    /// The dilution of precision at the estimated positions, from the anchors whose ranges were in use, and from all
+    /// that answered.
     pub fn dilution_over_time(&self, id: &str, setup: &Setup) -> Figure {
         let (answered, unknowns) = (self.answered(setup), self.unknowns(setup));
         let all = |_: usize, trace: &Trace| {
@@ -112,7 +115,7 @@ impl Shown<'_> {
             .with(self.over_time("ranges used", self.line(), used).coloured(Colour::Ours))
     }
 
-    /// Places of the anchors of which there are ranges.
+    /// The positions of the anchors that have ranges.
     fn answered(&self, setup: &Setup) -> Vec<[f64; 3]> {
         let mut heard = vec![false; setup.anchors.len()];
         for (range, _) in self.traces.iter().flat_map(|trace| &trace.ranges) {
@@ -133,7 +136,7 @@ impl Shown<'_> {
     }
 }
 
-/// Where the dilution is `level`, with its number in the middle of each line.
+/// The contour lines of the dilution `level`, each labelled in its middle.
 fn iso_line(level: f64, grid: &Grid) -> Series {
     let (mut points, mut labels) = (Vec::new(), Vec::new());
     for line in grid.contour(level.recip()) {
@@ -145,7 +148,7 @@ fn iso_line(level: f64, grid: &Grid) -> Series {
     Series::path(format!("HDOP {level}"), points).labelled(labels)
 }
 
-/// Dilution at each epoch of the anchors whose ranges were taken in lately.
+/// The dilution at each epoch from the anchors whose ranges were accepted recently.
 fn used(trace: &Trace, setup: &Setup, answered: usize, unknowns: Unknowns) -> Vec<(i64, f64)> {
     let fresh_us = fresh_us(trace, answered);
     let mut last_us = vec![None; setup.anchors.len()];
@@ -166,7 +169,7 @@ fn used(trace: &Trace, setup: &Setup, answered: usize, unknowns: Unknowns) -> Ve
     trace.epochs.iter().map(of).collect()
 }
 
-/// How long a range is in use, µs.
+/// The time for which a range counts as in use (µs).
 fn fresh_us(trace: &Trace, anchors: usize) -> i64 {
     let ends = trace.epochs.first().zip(trace.epochs.last());
     let span_s = ends.map_or(0.0, |(first, last)| (last.time_us - first.time_us) as f64 * 1e-6);
@@ -187,12 +190,12 @@ mod tests {
         assert_close(horizontal([0.0; 3], SQUARE, PLANE), 1.0);
         // Two anchors at right angles: each range is a coordinate.
         assert_close(horizontal([0.0; 3], SQUARE.into_iter().take(2), PLANE), 2_f64.sqrt());
-        // A clock costs nothing where the anchors are all around.
+        // An unknown clock costs nothing if the anchors are all around.
         assert_close(horizontal([0.0; 3], SQUARE, Unknowns { clock: true, ..PLANE }), 1.0);
-        // Ranges from 45° above tell a length in the plane half as well.
+        // Ranges from 45° above are half as informative about horizontal distances.
         let high = 2_f64.sqrt();
         assert_close(horizontal([0.0, 0.0, high], SQUARE, PLANE), 2_f64.sqrt());
-        // Their heights all tell the same: it costs nothing either.
+        // All anchors are equally high: an unknown height costs nothing either.
         assert_close(
             horizontal([0.0, 0.0, high], SQUARE, Unknowns { height: true, ..PLANE }),
             2_f64.sqrt(),

@@ -1,4 +1,4 @@
-//! Each anchor's ranges over time: what they leave over, and which are left out.
+//! Figures of each anchor's ranges over time: residuals and rejections.
 
 use kestirim_replay::robot::{Setup, Trace};
 
@@ -6,14 +6,14 @@ use super::Shown;
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::systems::robot::links::{Judged, of_anchors};
 
-/// χ² of one degree of freedom, 95 %.
+/// The 95 % quantile of χ² with one degree of freedom.
 const CHI_SQUARE_1: f64 = 3.841;
-/// Shares of what was left out are those of so long, µs.
+/// The window over which shares of rejected ranges are computed (µs).
 const LATELY_US: i64 = 10_000_000;
-/// With more anchors the lines of their standard deviations are hidden at first.
+/// The number of anchors beyond which the lines of their standard deviations are hidden initially.
 const FEW: usize = 4;
 
-/// Ranges by their anchor, and when they are shown.
+/// The ranges by anchor, with the times at which they are shown.
 #[derive(Debug, Clone)]
 pub struct Links<'a> {
     shown: &'a Shown<'a>,
@@ -21,12 +21,12 @@ pub struct Links<'a> {
 }
 
 impl<'a> Links<'a> {
-    /// Sorts the ranges of all traces by their anchor.
+    /// Groups the ranges of all traces by anchor.
     pub fn new(shown: &'a Shown<'a>, setup: &Setup) -> Self {
         Self { shown, anchors: of_anchors(shown.recording, setup, shown.traces) }
     }
 
-    /// What each anchor's ranges left over, with twice their standard deviation on either side.
+    /// The residuals of each anchor's ranges, with twice their standard deviation on either side.
     pub fn residuals(&self, id: &str) -> Figure {
         let centimetres = |metres: f64| 100.0 * metres;
         let taken = |it: &Judged| it.residual_m.filter(|_| it.taken).map(centimetres);
@@ -50,7 +50,7 @@ impl<'a> Links<'a> {
         figure
     }
 
-    /// Normalised innovations squared of each anchor, with the bound that 95 % keep.
+    /// The normalised innovations squared of each anchor, with the 95 % bound.
     pub fn nis(&self, id: &str) -> Figure {
         let taken = |it: &Judged| it.nis.filter(|_| it.taken);
         let bound = |_: usize, trace: &Trace| {
@@ -70,7 +70,7 @@ impl<'a> Links<'a> {
             .with(self.shown.over_time("95 %", Mark::Dashes, bound).coloured(Colour::Limit))
     }
 
-    /// The share of each anchor's ranges that was left out lately.
+    /// The recent share of rejected ranges of each anchor.
     pub fn rejections(&self, id: &str) -> Figure {
         let share = |(anchor, name): (usize, &str)| {
             let ranges = self.anchors.get(anchor).map_or(&[][..], Vec::as_slice);
@@ -99,7 +99,7 @@ impl<'a> Links<'a> {
         self.shown.recording.anchors.names.iter().map(String::as_str).enumerate()
     }
 
-    /// What is to be told of an anchor's ranges, as far as it is known.
+    /// A quantity of an anchor's ranges over time, where it is known.
     fn over_time(
         &self,
         name: impl Into<String>,
@@ -134,7 +134,7 @@ impl<'a> Links<'a> {
         Series::new(name, mark, xs, ys).coloured(Colour::Other(anchor))
     }
 
-    /// What was left out, whosever it is.
+    /// The rejected ranges of all anchors.
     fn left_out(&self, value: impl Fn(&Judged) -> Option<f64>) -> Series {
         let rejected = self.anchors.iter().flatten().filter(|it| !it.taken);
         let point = |it: &Judged| Some((self.shown.seconds(it.part, it.time_us), value(it)?));
@@ -145,7 +145,7 @@ impl<'a> Links<'a> {
     }
 }
 
-/// Whether a range is too long ago, or of another part.
+/// Whether a range is outside the window, or of another part.
 fn is_over(old: &Judged, now: &Judged) -> bool {
     old.part != now.part || old.time_us < now.time_us - LATELY_US
 }

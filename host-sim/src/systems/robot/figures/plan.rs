@@ -1,9 +1,9 @@
-//! The plan of a room: anchors, truth, and how sure a position is.
+//! The plan of a room: anchors, truth, and the uncertainty of a position.
 
 use crate::figure::{Colour, Figure, Mark, Series, ellipse};
 use crate::systems::robot::recording::{Recording, Truth};
 
-/// A map with the anchors, the rectangle about them, and the true path.
+/// A map with the anchors, their bounding rectangle, and the true path.
 pub fn room(id: &str, recording: &Recording) -> Figure {
     let places = || recording.anchors.positions.iter().map(|&[x, y, _]| [x, y]);
     let anchors = Series::points("anchors", places())
@@ -37,12 +37,12 @@ pub fn room(id: &str, recording: &Recording) -> Figure {
     figure
 }
 
-/// A rectangle between two opposite corners.
+/// A rectangle with two given opposite corners.
 pub(super) fn rectangle(name: &str, [x0, y0, x1, y1]: [f64; 4]) -> Series {
     Series::path(name, [[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]])
 }
 
-/// The ellipse that holds 95 % of a normal distribution.
+/// The ellipse that contains 95 % of a normal distribution.
 pub(super) fn around([x, y]: [f64; 2], spread: [f64; 3]) -> Vec<[f64; 2]> {
     let [a, b, c] = ellipse(spread);
     let point = |step: u32| {
@@ -63,7 +63,7 @@ mod tests {
         let points = around([1.0, 2.0], [2.5, 1.5, 2.5]);
         let positions = points.iter().map(|&[x, y]| [x, y, 0.0]).collect();
         let [x0, y0, x1, y1] = Anchors { positions, ..Anchors::default() }.rectangle();
-        // χ² of two degrees of freedom; variances 4 along the diagonal and 1 across it.
+        // χ² with two degrees of freedom; the variance is 4 along the diagonal and 1 across it.
         let (chi_square, extent) = (5.991_f64, (5.991_f64 * 2.5).sqrt());
         for (found, expected) in [(x1 - 1.0, extent), (1.0 - x0, extent), (y1 - 2.0, extent)] {
             assert!((found - expected).abs() < 0.05 * extent, "{found} / {expected}");

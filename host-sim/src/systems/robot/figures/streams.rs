@@ -6,8 +6,8 @@ use crate::stream::Stream;
 use crate::systems::robot::recording::Recording;
 use crate::systems::robot::track::Tracks;
 
-/// What was measured, what the tracker makes of it, and a smoother if it was asked for, and the truth as far as it is known. Points that were
-/// recorded one by one begin at the same time, so each has topics of its own.
+/// The measurements, the track, the smoothed track if there is one, and the truth as far as it is known. Points that
+/// were recorded separately all begin at the same time, so each has its own topics.
 pub fn streams(recording: &Recording, tracks: &Tracks) -> Vec<Stream> {
     let seconds = |time_us: i64| time_us as f64 * 1e-6;
     let mut streams = Vec::new();
@@ -54,7 +54,7 @@ pub fn streams(recording: &Recording, tracks: &Tracks) -> Vec<Stream> {
     streams
 }
 
-/// What a sensor said that is written as a stream: its topic, its columns, their values.
+/// The stream of a sensor event: its topic, its columns and their values; `None` if there is none.
 fn streamed(event: &Event) -> Option<(&'static str, &'static [&'static str], Vec<f64>)> {
     match event {
         Event::Inertial(sample) => {
@@ -65,7 +65,7 @@ fn streamed(event: &Event) -> Option<(&'static str, &'static [&'static str], Vec
             &["speed_m_s", "turn_rate_rad_s"],
             vec![sample.speed, sample.turn_rate],
         )),
-        // With the ranges stands what became of each.
+        // Ranges are written elsewhere, each with its outcome.
         _ => None,
     }
 }

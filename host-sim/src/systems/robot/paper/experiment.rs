@@ -1,7 +1,7 @@
-//! `host-sim run robot`: the paper's Table 1, with the start made visible.
+//! `host-sim run robot`: the paper's Table 1, showing the effect of the filters' start.
 //!
-//! Every filter of the paper is run twice: started at the surveyed point, as its numbers can only have come
-//! about, and started at the first trilateration, as anyone has to who does not know yet where the robot is.
+//! Every filter of the paper is run twice: started at the surveyed point, which is the only way to obtain its numbers,
+//! and started at the first trilateration, as is necessary if the robot's position is not yet known.
 
 use std::fmt;
 
@@ -18,46 +18,46 @@ use crate::systems::robot::simulate::day::{COLUMNS, Day, LINES, WAYS};
 use crate::systems::robot::simulate::scenario;
 use crate::{Error, output};
 
-/// Repetitions unless told otherwise: the mean of the table is then good to a fiftieth.
+/// The default number of repetitions, with which the table's mean is accurate to a fiftieth.
 const TRIALS: u64 = 200;
 
-/// Errors in cm, of the mean of 50 positions.
+/// Errors of the mean of 50 positions (cm).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Row {
-    /// As published.
+    /// The errors as published.
     pub published: PositionErrors,
-    /// The paper's protocol, its filters started at the surveyed point.
+    /// The errors by the paper's protocol, its filters started at the surveyed point.
     pub from_the_truth: PositionErrors,
-    /// The same filters, started at the first trilateration.
+    /// The errors of the paper's filters started at the first trilateration.
     pub honest_start: PositionErrors,
-    /// The same adaptive filter, started 10 cm beside the surveyed point.
+    /// The error of the paper's adaptive filter started 10 cm from the surveyed point.
     pub aekf_from_10_cm_beside_cm: f64,
-    /// This library's default without calibration.
+    /// The error of this library's default without calibration.
     pub ours_cm: f64,
-    /// And with the anchors calibrated at six marked places.
+    /// The error of this library's default with the anchors calibrated at six marked points.
     pub ours_calibrated_cm: f64,
-    /// What the best unbiased estimator errs by, if nothing is known of the biases.
+    /// The error of the best unbiased estimator if nothing is known about the biases.
     pub limit_cm: f64,
-    /// The same if each anchor's bias is known.
+    /// The error of the best unbiased estimator if each anchor's bias is known.
     pub limit_calibrated_cm: f64,
 }
 
-/// The straight line: root mean square errors, cm.
+/// Root mean square errors along the straight line (cm).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Line {
-    /// Trilateration alone.
+    /// The error of trilateration alone.
     pub unfiltered_cm: f64,
-    /// The paper's filters from an honest start.
+    /// The error of the paper's EKF, started at the first trilateration.
     pub ekf_cm: f64,
-    /// And the adaptive one.
+    /// The error of the paper's adaptive EKF, started at the first trilateration.
     pub aekf_cm: f64,
-    /// This library's default without calibration.
+    /// The error of this library's default without calibration.
     pub ours_cm: f64,
-    /// And with it.
+    /// The error of this library's default with the anchors calibrated.
     pub ours_calibrated_cm: f64,
 }
 
-/// What the command prints.
+/// The report that the command prints.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
     system: &'static str,
@@ -69,10 +69,10 @@ pub struct Report {
     pub(super) line: Line,
 }
 
-/// The days.
+/// The trials: one per day.
 ///
 /// # Errors
-/// If the scalar is not supported.
+/// If the number type is not supported.
 pub fn trials(options: RunOptions) -> Result<Vec<Block>, Error> {
     let scalar = choose_scalar(Robot::NAME, options.scalar, &ScalarKind::ALL, ScalarKind::F32)?;
     let points = (1..=15).flat_map(|point| WAYS.map(|way| format!("P{point} {way}_cm")));
@@ -84,10 +84,10 @@ pub fn trials(options: RunOptions) -> Result<Vec<Block>, Error> {
     Ok(vec![Block::new("days", columns, options.trials.unwrap_or(TRIALS), day)])
 }
 
-/// What came of them.
+/// Evaluates the samples of the trials.
 ///
 /// # Errors
-/// As [`trials`].
+/// Those of [`trials`].
 pub fn report(options: RunOptions, samples: &[Samples]) -> Result<Report, Error> {
     let scalar = choose_scalar(Robot::NAME, options.scalar, &ScalarKind::ALL, ScalarKind::F32)?;
     let days = &samples[0];

@@ -1,4 +1,4 @@
-//! What no estimator can do better, from the geometry and the error model alone.
+//! The theoretical bound for any estimator, from the geometry and the error model alone.
 
 use nalgebra::{Matrix3, Matrix4, Matrix4x3};
 
@@ -6,20 +6,19 @@ use crate::systems::robot::simulate::scenario::{
     ANCHOR_SIGMA, ANCHORS, EPOCHS, LINK_SIGMA, NOISE_SIGMA,
 };
 
-/// What an estimator may know of the biases.
+/// The knowledge of an estimator about the biases.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Knowledge {
-    /// That the links have one in common, whatever it is.
+    /// All links have a common bias, whose value is unknown.
     Nothing,
-    /// Each anchor's own; what a link adds to it is not known.
+    /// Each anchor's bias is known; what a link adds to it is not.
     Anchors,
 }
 
-/// The Cramér–Rao bound of the mean error at a place, m, without reflections and persons.
+/// The Cramér–Rao bound of the mean error at a position (m), without reflections and persons.
 ///
-/// The errors of the four links' means are independent with the variance of what is not known of them; the
-/// mean length of a two-dimensional normal error is √(π/4) of its root mean square, if it is as large in
-/// all directions (nearly so among four corners).
+/// The errors of the four links' means are independent, with the variance of their unknown part; the mean length of a
+/// two-dimensional normal error is √(π/4) of its root mean square if it is isotropic (nearly so among four corners).
 pub fn mean_error_limit([x, y]: [f64; 2], knowledge: Knowledge) -> f64 {
     let own = match knowledge {
         Knowledge::Nothing => ANCHOR_SIGMA,

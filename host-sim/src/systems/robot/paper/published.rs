@@ -1,15 +1,15 @@
-//! What the paper prints, with the table it stands in.
+//! Results published in the paper, each with its table.
 
 use serde::Serialize;
 
-/// Position errors at one point of the office, cm: the error of the mean of 50 measurements.
+/// Position errors at one point of the office: errors of the mean of 50 measurements (cm).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PositionErrors {
-    /// Trilateration alone.
+    /// The error of trilateration alone.
     pub unfiltered_cm: f64,
-    /// Extended Kalman filter.
+    /// The error of the extended Kalman filter.
     pub ekf_cm: f64,
-    /// Adaptive extended Kalman filter.
+    /// The error of the adaptive extended Kalman filter.
     pub aekf_cm: f64,
 }
 
@@ -37,7 +37,7 @@ pub const TABLE_1: [PositionErrors; 15] = [
     errors(21.16, 7.61, 0.89),
 ];
 
-/// The table's means as published.
+/// The means of Table 1 as published.
 pub const TABLE_1_MEAN: PositionErrors = errors(15.40, 6.75, 2.52);
 
 #[cfg(test)]

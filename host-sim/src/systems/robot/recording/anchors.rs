@@ -1,4 +1,4 @@
-//! Where the anchors are.
+//! Files of anchor positions.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::text::printable;
 /// Reads anchors: CSV with columns `anchor,x,y,z` (m).
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read(path: &Path) -> Result<Anchors, Error> {
     let mut anchors = Anchors::default();
     table::read(

@@ -1,4 +1,4 @@
-//! What is known of each anchor's ranges: a file of biases.
+//! Calibrations of anchors, as files of range biases.
 
 use std::path::Path;
 
@@ -10,45 +10,45 @@ use crate::table;
 use crate::text::printable;
 use crate::{Error, output};
 
-/// Beyond the bias of any radio that works, m.
+/// The largest plausible bias (m).
 const LARGEST_BIAS: f64 = 100.0;
 
-/// What no radio measures is left out, m.
+/// The plausible ranges (m); others are left out.
 const PLAUSIBLE: std::ops::RangeInclusive<f64> = -1.0..=200.0;
-/// The standard deviation of normal values from the distance of their quartiles.
+/// The ratio of the standard deviation of normal values to their interquartile range.
 const DEVIATION: f64 = 0.7413;
 
-/// What was found of an anchor.
+/// The calibration of an anchor.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AnchorCalibration {
-    /// Its name.
+    /// The name of the anchor.
     pub anchor: String,
-    /// What its ranges are too long by, m.
+    /// The bias of its ranges (m), positive if they are too long.
     pub bias_m: f64,
-    /// Standard deviation of what is left, m.
+    /// The standard deviation of the remaining error (m).
     pub sigma_m: f64,
-    /// From how many ranges.
+    /// The number of ranges used.
     pub ranges: usize,
 }
 
-/// The differences between measured and true distances, anchor by anchor.
+/// The differences between measured and true distances of each anchor.
 ///
-/// Firmware has `kestirim_uwb_ranging::Quartiles` for this; here there is memory for exact ones.
+/// Firmware uses `kestirim_uwb_ranging::Quartiles` for this; here there is memory for exact ones.
 #[derive(Debug, Clone)]
 pub struct Residuals {
     of_anchors: Vec<Vec<f64>>,
-    /// How many ranges of each were left out, as no radio measures them.
+    /// The number of implausible ranges of each anchor that were left out.
     left_out: Vec<usize>,
 }
 
 impl Residuals {
-    /// Nothing yet.
+    /// A collection without ranges.
     pub fn new(anchors: &Anchors) -> Self {
         let count = anchors.names.len();
         Self { of_anchors: vec![Vec::new(); count], left_out: vec![0; count] }
     }
 
-    /// Takes in a range measured at a known place.
+    /// Adds a range measured at a known position.
     pub fn add(&mut self, anchors: &Anchors, anchor: usize, range: f64, truth: [f64; 3]) {
         let (Some(place), Some(residuals)) =
             (anchors.positions.get(anchor), self.of_anchors.get_mut(anchor))
@@ -63,13 +63,13 @@ impl Residuals {
         }
     }
 
-    /// Whether more ranges were left out than taken: they are in another unit.
+    /// Whether more ranges were left out than used, which means that they are in another unit.
     pub fn is_doubtful(&self) -> bool {
         let taken: usize = self.of_anchors.iter().map(Vec::len).sum();
         self.left_out.iter().sum::<usize>() > taken
     }
 
-    /// The calibration of every anchor that was heard.
+    /// The calibration of every anchor with ranges.
     pub fn calibrations(&self, anchors: &Anchors) -> Vec<AnchorCalibration> {
         let heard = anchors.names.iter().zip(&self.of_anchors).filter(|(_, of)| !of.is_empty());
         let calibration = |(name, residuals): (&String, &Vec<f64>)| AnchorCalibration {
@@ -102,11 +102,11 @@ pub fn write(path: &Path, calibrations: &[AnchorCalibration]) -> Result<(), Erro
     })
 }
 
-/// The bias of each anchor of the list, m, and warnings of those that the file does not name: they are taken to be
-/// like the others.
+/// The bias of each anchor of the list (m), and warnings about those that the file does not name: their biases are
+/// assumed to be the mean of the others.
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn of(path: &Path, anchors: &Anchors) -> Result<(Vec<f64>, Vec<String>), Error> {
     let known = read(path, anchors)?;
     let found: Vec<f64> = known.iter().flatten().copied().collect();
@@ -118,7 +118,7 @@ pub fn of(path: &Path, anchors: &Anchors) -> Result<(Vec<f64>, Vec<String>), Err
     Ok((known.iter().map(|bias| bias.unwrap_or(mean)).collect(), warnings.collect()))
 }
 
-/// The bias of each anchor of the list, m; none of those that the file does not name.
+/// The bias of each anchor of the list (m); `None` for those that the file does not name.
 fn read(path: &Path, anchors: &Anchors) -> Result<Vec<Option<f64>>, Error> {
     let mut biases = vec![None; anchors.names.len()];
     table::read(
@@ -132,7 +132,7 @@ fn read(path: &Path, anchors: &Anchors) -> Result<Vec<Option<f64>>, Error> {
                     .line
                     .error("expected a bias in metres, found one beyond any radio"));
             }
-            // A calibration may know more anchors than are used.
+            // A calibration may contain more anchors than are used.
             let Some(place) = anchors.find(&row.text(name)) else { return Ok(()) };
             let Some(known @ None) = biases.get_mut(place) else {
                 let found = printable(&row.text(name));

@@ -1,4 +1,4 @@
-//! What a robot's IMU and wheels recorded.
+//! Logs of a robot's IMU and wheels.
 
 use std::path::Path;
 
@@ -11,10 +11,10 @@ use crate::table::{self, Column, Found, Log, Row};
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.806_65;
 
-/// A robot's sensors are read so often, s.
+/// The usual range of the time between samples of a robot's sensors (s).
 const USUAL_STEP_S: [f64; 2] = [5e-4, 2.0];
 
-/// Columns of an IMU log, as far as they are there.
+/// The columns of an IMU log that are present.
 struct Columns {
     time: Column,
     attitude: Option<[Column; 4]>,
@@ -33,11 +33,10 @@ fn numbers<const K: usize>(row: &Row<'_>, columns: [Column; K]) -> Result<[f64; 
 /// Reads an IMU: CSV with a column `t` (s) and any of `qw,qx,qy,qz` (body to room), `gx,gy,gz` (rad/s),
 /// `ax,ay,az` (specific force, m/s²) and `lax,lay,laz` (acceleration without gravity, body, m/s²).
 ///
-/// Without any acceleration there are no samples. The angular rate is not needed by a tracker of
-/// positions.
+/// Without any acceleration there are no samples. A position tracker does not need the angular rate.
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read_inertial(path: &Path, options: &Options) -> Result<(Vec<Inertial>, Found), Error> {
     let mut samples: Vec<Inertial> = Vec::new();
     let found = table::read_log(
@@ -69,13 +68,13 @@ pub fn read_inertial(path: &Path, options: &Options) -> Result<(Vec<Inertial>, F
     Ok((samples, found))
 }
 
-/// No vehicle is wider, m.
+/// The largest plausible track width of a vehicle (m).
 const WIDEST_TRACK_M: f64 = 10.0;
 
 /// Reads wheels: CSV with columns `t,v_left,v_right,track` (s, m/s, m; the track at most 10 m).
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read_wheels(path: &Path, options: &Options) -> Result<(Vec<Wheels>, Found), Error> {
     let mut samples: Vec<Wheels> = Vec::new();
     let found = table::read_log(
@@ -100,7 +99,7 @@ pub fn read_wheels(path: &Path, options: &Options) -> Result<(Vec<Wheels>, Found
     Ok((samples, found))
 }
 
-/// A body vector in the room; none for a quaternion of length zero.
+/// Rotates a vector from the body to the room; `None` for a quaternion of length zero.
 fn turned([w, x, y, z]: [f64; 4], [a, b, c]: [f64; 3]) -> Option<[f64; 3]> {
     let size = w * w + x * x + y * y + z * z;
     if size < 1e-6 {
@@ -121,7 +120,7 @@ mod tests {
     #[test]
     fn a_quaternion_turns_from_body_to_room() {
         let half = std::f64::consts::FRAC_1_SQRT_2;
-        // A quarter turn to the left: what is ahead in the body is y in the room.
+        // After a quarter turn to the left, ahead in the body frame is y in the room.
         let [x, y, z] = turned([half, 0.0, 0.0, half], [1.0, 0.0, 2.0]).unwrap();
         assert!(x.abs() < 1e-12 && (y - 1.0).abs() < 1e-12 && (z - 2.0).abs() < 1e-12);
         assert_eq!(turned([0.0; 4], [1.0; 3]), None);

@@ -9,21 +9,21 @@ use crate::Error;
 use crate::table;
 use crate::text::printable;
 
-/// Where the tag was put down: each coordinate if the file has it.
+/// A point where the tag was put down, with the coordinates that the file has.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Point {
-    /// Its name.
+    /// The name of the point.
     pub name: String,
-    /// x and y, m: for accuracy and calibration alone.
+    /// The x and y coordinates (m), used only for accuracy and calibration.
     pub plane: Option<[f64; 2]>,
-    /// z, m.
+    /// The z coordinate (m).
     pub height: Option<f64>,
 }
 
 /// Reads points in their order: CSV with a column `point` and any of `x,y` and `z` (m).
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read_points(path: &Path) -> Result<Vec<Point>, Error> {
     let mut points: Vec<Point> = Vec::new();
     table::read(
@@ -50,10 +50,10 @@ pub fn read_points(path: &Path) -> Result<Vec<Point>, Error> {
     Ok(points)
 }
 
-/// Reads what is known over time: CSV with a column `t` (s) and the named ones (m).
+/// Reads quantities over time: CSV with a column `t` (s) and the named ones (m).
 ///
 /// # Errors
-/// The file, the line, and what was expected there; times may not go backwards.
+/// An error that names the file, the line, and what was expected there; times must not decrease.
 pub fn read_course<const K: usize>(path: &Path, names: [&str; K]) -> Result<Course<K>, Error> {
     let mut rows: Vec<(i64, [f64; K])> = Vec::new();
     table::read(
@@ -81,7 +81,7 @@ pub fn read_course<const K: usize>(path: &Path, names: [&str; K]) -> Result<Cour
 /// Reads the height of the tag at each point: CSV with columns `point,z` (m).
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read_heights(path: &Path) -> Result<BTreeMap<String, f64>, Error> {
     let mut heights = BTreeMap::new();
     table::read(

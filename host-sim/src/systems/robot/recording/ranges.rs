@@ -1,4 +1,4 @@
-//! Recorded ranges, of a tag that moves or of one put down at marked points.
+//! Logs of ranges, of a moving tag or of one put down at marked points.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -11,14 +11,14 @@ use crate::Error;
 use crate::table::{self, Column, Found, Log, Row};
 use crate::text::{self, printable};
 
-/// Time between the epochs of a static recording, µs.
+/// The time between the epochs of a static recording (µs).
 const EPOCH_US: i64 = 100_000;
-/// A radio ranges so often, s.
+/// The usual range of the time between ranges (s).
 const USUAL_STEP_S: [f64; 2] = [2e-3, 2.0];
-/// Beyond any count of epochs.
+/// The largest plausible count of epochs.
 const LAST_EPOCH: f64 = 1e9;
 
-/// Which anchors of the list the labels of a log mean.
+/// The anchors of the list that the labels of a log refer to.
 fn places(labels: &Labels, path: &Path, anchors: &Anchors) -> Result<Vec<Option<usize>>, Error> {
     labels.places(&anchors.names).map_err(|error| table::refused(path, &error))
 }
@@ -26,25 +26,25 @@ fn places(labels: &Labels, path: &Path, anchors: &Anchors) -> Result<Vec<Option<
 /// The ranges of a log.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RangeLog {
-    /// In the order of the log.
+    /// The ranges, in the order of the log.
     pub rows: Vec<RangeRow>,
-    /// Differences in place of ranges, of a tag that only listens.
+    /// Range differences in place of ranges, for a tag that only listens.
     pub differences: Vec<Difference>,
-    /// How many lines name an anchor that is not in the list; they are left out.
+    /// The number of lines with an anchor that is not in the list, which are left out.
     pub unlisted: usize,
-    /// How many say that there is no range by a number that is none: zero or less.
+    /// The number of lines that mark a missing range by zero or a negative number.
     pub without: usize,
 }
 
 impl RangeLog {
-    /// Takes a line, with the place of its anchor's name among those of the log.
+    /// Adds a line, with the index of its anchor's name among those of the log.
     fn add(&mut self, time_us: i64, name: usize, range: Option<f64>) {
         let range = range.filter(|range| !range.is_nan());
         self.rows.push(RangeRow { time_us, anchor: name, range });
     }
 
-    /// Puts the anchors' places in the list in the place of their names in the log, and takes out what is no distance, unless most
-    /// are none: then they are wrong, and say so themselves.
+    /// Replaces the indices of anchor names in the log by indices into the list, and removes values that are not
+    /// distances, unless most are not: then they are wrong, and are left to be rejected.
     fn resolve(&mut self, places: &[Option<usize>]) {
         let count = self.rows.len();
         self.rows.retain_mut(|row| {
@@ -65,11 +65,11 @@ impl RangeLog {
     }
 }
 
-/// Reads the log of a moving tag: as its radio printed it, stamps, differences, a column an anchor, or a table with columns `t,anchor,range` (s,
-/// m).
+/// Reads the log of a moving tag: as printed by its radio, as timestamps, as differences, with a column per anchor, or
+/// as a table with columns `t,anchor,range` (s, m).
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read_moving(
     path: &Path,
     anchors: &Anchors,
@@ -96,7 +96,7 @@ pub fn read_moving(
     Ok((log, found))
 }
 
-/// Reads a log with a line or a column an anchor; none if it is another.
+/// Reads a log with a line or a column per anchor; `None` if it is of another kind.
 fn of_radio(
     path: &Path,
     bytes: &[u8],
@@ -128,11 +128,11 @@ fn of_radio(
     }))
 }
 
-/// Reads the log of a tag put down at points: CSV with columns `point,k,anchor,range`, where k counts
-/// epochs of 0.1 s. The logs are sorted by point.
+/// Reads the log of a tag put down at points: CSV with columns `point,k,anchor,range`, where k counts epochs of 0.1 s.
+/// The logs are sorted by point.
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read_static(
     path: &Path,
     anchors: &Anchors,
@@ -162,8 +162,8 @@ pub fn read_static(
     Ok((logs, found))
 }
 
-/// A range, or none from an empty field. Radios log the wildest values: what is a number at all is read; [`RangeLog`] and the tracker
-/// refuse what is no distance.
+/// The range in a field; `None` if it is empty. Radios log implausible values: every number is read, and [`RangeLog`]
+/// and the tracker refuse what is not a distance.
 fn optional_range(row: &Row<'_>, column: Column) -> Result<Option<f64>, Error> {
     if row.is_empty(column) {
         return Ok(None);

@@ -1,15 +1,15 @@
-//! The settings of a tracker as firmware says them.
+//! The settings of a tracker in the form of firmware source.
 
 use kestirim_replay::robot::{Dimensions, Setup, TrackerKind, Tuning};
 
 use crate::system::Literal;
 
-/// The same in firmware: the tracker's configuration, and for a recording (`with_anchors`) its anchors.
+/// The equivalent configuration of firmware: that of the tracker, and for a recording (`with_anchors`) the anchors.
 pub(in crate::systems::robot) fn firmware(setup: &Setup, with_anchors: bool) -> String {
     Said(setup).firmware(with_anchors)
 }
 
-/// A setup that is said as firmware says it.
+/// A setup, to be written as firmware source.
 struct Said<'a>(&'a Setup);
 
 impl Said<'_> {

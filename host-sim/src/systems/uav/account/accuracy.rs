@@ -1,25 +1,26 @@
-//! Estimates against the truth.
+//! The accuracy of estimates relative to the truth.
 
 use serde::Serialize;
 
 use crate::metrics::{error_over_sigma, rms};
 use crate::systems::uav::track::Track;
 
-/// How good the estimates are.
+/// The accuracy of the estimates of a flight.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Accuracy {
-    /// Lines whose time is one of the truth's.
+    /// The number of lines at times of the truth.
     pub samples: usize,
-    /// Root mean square errors of α, q, V, θ, where their truth is known.
+    /// The root mean square errors of α, q, V, θ, if their truth is known.
     pub rmse: [Option<f64>; 4],
-    /// The same over the second half of the log.
+    /// The root mean square errors over the second half of the log.
     pub late_rmse: [Option<f64>; 4],
-    /// Those of the second half over the root mean square standard deviations; none of an observer, which knows none.
+    /// The root mean square errors over the second half divided by the root mean square standard deviations; `None` for
+    /// an observer, which has none.
     pub error_over_sigma: [Option<f64>; 4],
 }
 
 impl Accuracy {
-    /// Of a flight, if there is a truth.
+    /// The accuracy of a flight, if there is a truth.
     pub fn of(Track { flight, followed, .. }: &Track) -> Option<Self> {
         flight.truth.as_ref()?;
         let estimates = &followed.estimates;

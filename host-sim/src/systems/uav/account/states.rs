@@ -1,13 +1,13 @@
-//! What is told of the four states.
+//! Statistics and text of the four states.
 
 use nalgebra::SVector;
 
 use crate::systems::uav::simulate::scenario::INTERVAL_S;
 
-/// A state is caught where its error stays within these.
+/// The error bands of α, q, V, θ: a state is caught when its error stays within its band.
 pub const BANDS: [f64; 4] = [0.005, 0.005, 0.1, 0.005];
 
-/// When each state's error was outside its band for the last time, and a sample later: s.
+/// The time from which on each state's error stays within its band (s); `None` if it never does.
 pub fn caught(errors: &[SVector<f64, 4>]) -> [Option<f64>; 4] {
     std::array::from_fn(|state| {
         let outside = |error: &SVector<f64, 4>| error[state].abs() > BANDS[state];
@@ -16,13 +16,13 @@ pub fn caught(errors: &[SVector<f64, 4>]) -> [Option<f64>; 4] {
     })
 }
 
-/// Times to catch; none: not within ten seconds.
+/// Times to catch the states, as text; `None` means not within ten seconds.
 pub fn times(seconds: Option<[Option<f64>; 4]>) -> String {
     let one = |time: Option<f64>| time.map_or("> 10".to_owned(), |time| format!("{time:.2}"));
     seconds.map_or("none".to_owned(), |all| all.map(one).join(" "))
 }
 
-/// Three digits of each.
+/// Four numbers as text, with three digits each.
 pub fn shown(numbers: [f64; 4]) -> String {
     numbers
         .map(|number| if number < 0.01 { format!("{number:.1e}") } else { format!("{number:.3}") })

@@ -1,4 +1,4 @@
-//! Whether a Kalman filter's innovations are as large as it expects, and white.
+//! Consistency and whiteness of a Kalman filter's innovations.
 
 use kestirim_replay::uav::Followed;
 
@@ -6,18 +6,18 @@ use super::{KALMAN, Line, seconds};
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::systems::uav::track::Track;
 
-/// Lags at which the autocorrelation is shown.
+/// The number of lags for which the autocorrelation is shown.
 const LAGS: usize = 40;
-/// Innovations of an output of which it is made, at the most.
+/// The maximum number of innovations per output from which it is computed.
 const MOST: usize = 50_000;
-/// Stretches of time over which the normalised innovations squared are averaged.
+/// The number of time intervals over which the normalised innovations squared are averaged.
 const STRETCHES: usize = 100;
-/// On a logarithmic axis, what is smaller is as much.
+/// The smallest value shown on a logarithmic axis.
 const LEAST: f64 = 1e-3;
-/// 95 % of a normal distribution are within so many deviations.
+/// The number of standard deviations within which 95 % of a normal distribution lie.
 const WITHIN: f64 = 1.96;
 
-/// Innovations of each output in standard deviations: one a line, or nothing where it was not measured.
+/// The normalised innovations of each output: one per line, `None` where it was not measured.
 pub(super) fn normalised(followed: &Followed) -> Vec<Vec<Option<f64>>> {
     let outputs = followed.innovations.iter().zip(&followed.normalised);
     let of_output = |(innovations, normalised): (&Vec<Option<f64>>, &Vec<f64>)| {
@@ -27,9 +27,10 @@ pub(super) fn normalised(followed: &Followed) -> Vec<Vec<Option<f64>>> {
     outputs.map(of_output).collect()
 }
 
-/// Autocorrelation of what is zero on average at lags from 1 on, and in how many products the first one is: r(k) is the mean product of
-/// two that are k lines apart over the mean square (Mehra, *On the Identification of Variances and Adaptive Kalman Filtering*, IEEE
-/// Trans. Automatic Control 15 (1970)). Of white noise 95 % are within ±1.96/√N.
+/// The autocorrelation of a zero-mean sequence at lags from 1 on, and the number of products in the first one: r(k) is
+/// the mean product of two values that are k lines apart, divided by the mean square (Mehra, *On the Identification of
+/// Variances and Adaptive Kalman Filtering*, IEEE Trans. Automatic Control 15 (1970)). For white noise 95 % are within
+/// ±1.96/√N.
 pub(super) fn autocorrelation(innovations: &[Option<f64>]) -> (Vec<f64>, usize) {
     let squares = innovations.iter().flatten().map(|it| it * it);
     let count = squares.clone().count();
@@ -44,12 +45,12 @@ pub(super) fn autocorrelation(innovations: &[Option<f64>]) -> (Vec<f64>, usize) 
     ((1..=LAGS.min(count / 4)).map(at).collect(), count.saturating_sub(1))
 }
 
-/// The later half: the filter has settled by then.
+/// The second half of a sequence, when the filter has settled.
 pub(super) fn late<T>(values: &[T]) -> &[T] {
     &values[values.len() / 2..]
 }
 
-/// Autocorrelation of each output's innovations, with the bound of white noise.
+/// The autocorrelation of each output's innovations, with the bound of white noise.
 pub(super) fn whiteness(ours: &Track, kalman: Option<&Track>) -> Figure {
     let all = kalman.map(|track| normalised(&track.followed)).unwrap_or_default();
     let interval = ours.flight.log.interval_s;
@@ -78,9 +79,9 @@ pub(super) fn whiteness(ours: &Track, kalman: Option<&Track>) -> Figure {
         .with(border("the same, below", -bound))
 }
 
-/// Normalised innovations squared a measurement, as means of short stretches of time, with the bound that holds 95 % of them if model and
-/// noise are right (Bar-Shalom, Li & Kirubarajan, *Estimation with Applications to Tracking and Navigation*, 2001, 5.4.2): that of χ²
-/// with as many degrees of freedom as there are measurements.
+/// Normalised innovations squared per measurement, averaged over short intervals, with the bounds that contain 95 % of
+/// them if model and noise are right (Bar-Shalom, Li & Kirubarajan, *Estimation with Applications to Tracking and
+/// Navigation*, 2001, 5.4.2): those of χ² with as many degrees of freedom as measurements.
 pub(super) fn nis(kalman: Option<&Track>) -> Figure {
     let (mut lines, mut means, mut bounds) =
         (Line::default(), Line::default(), [const { Vec::new() }; 2]);
@@ -126,8 +127,8 @@ pub(super) fn nis(kalman: Option<&Track>) -> Figure {
         .with(Series::new("mean of a stretch", Mark::LineAndPoints, t, mean).coloured(KALMAN.1))
 }
 
-/// Quantile of χ² with this many degrees of freedom, where a normal distribution's is so many deviations (Wilson & Hilferty, PNAS 17
-/// (1931)).
+/// The quantile of χ² with this many degrees of freedom that corresponds to the given number of standard deviations of
+/// a normal distribution (Wilson & Hilferty, PNAS 17 (1931)).
 fn chi_squared(freedom: f64, deviations: f64) -> f64 {
     let spread = 2.0 / (9.0 * freedom);
     freedom * (1.0 - spread + deviations * spread.sqrt()).max(0.0).powi(3)
@@ -138,7 +139,7 @@ mod tests {
     use super::*;
     use kestirim_replay::uav::{Deviations, Estimate, Log, Model, Plant};
 
-    /// Uniform noise of unit variance that looks random.
+    /// Pseudo-random uniform noise of unit variance.
     fn white(count: usize) -> impl Iterator<Item = f64> {
         let mut state = 7_u64;
         (0..count).map(move |_| {
@@ -157,7 +158,7 @@ mod tests {
         let outside = |values: &[f64]| values.iter().filter(|it| it.abs() > bound).count();
         assert_eq!((values.len(), count), (LAGS, 3999));
         assert!(outside(&values) <= 5, "{values:?}");
-        // First order: r(k) = 0.6ᵏ.
+        // A first-order process: r(k) = 0.6ᵏ.
         let mut last = 0.0;
         let lasting: Vec<_> = white(4000)
             .map(|noise| {

@@ -1,13 +1,13 @@
-//! Modes of a model, as a table.
+//! The table of a model's modes.
 
 use std::f64::consts::{LN_2, TAU};
 
 use crate::system::Sheet;
 
-/// A mode that turns is told from another by being so many times as fast.
+/// The frequency ratio above which two oscillatory modes are named differently.
 const APART: f64 = 2.0;
 
-/// What each pole, or pair of poles, of a model is like (1/s).
+/// The table of the properties of each pole, or pair of poles, of a model (1/s).
 pub(super) fn table(poles: &[[f64; 2]]) -> Sheet {
     let mut modes: Vec<[f64; 2]> = poles.iter().copied().filter(|[_, im]| *im >= 0.0).collect();
     modes.sort_by(|a, b| size(*b).total_cmp(&size(*a)));

@@ -1,4 +1,4 @@
-//! Poles of continuous time, from the matrices of discrete time.
+//! Continuous-time poles, from discrete-time matrices.
 
 use kestirim_observer_design::{Complex, Discrete, eigenvalues, riccati};
 use kestirim_replay::uav::{Assumed, Deviations, Model, Options, rows};
@@ -9,7 +9,7 @@ use super::{KALMAN, LUENBERGER};
 use crate::Error;
 use crate::figure::{Colour, Figure, Mark, Series};
 
-/// Of x⁺ = A x at this interval (s), 1/s; none where an eigenvalue is zero or none was found.
+/// The poles of x⁺ = A x at this interval (s), in 1/s; empty if an eigenvalue is zero or none was found.
 pub(super) fn of(a: &SMatrix<f64, 4, 4>, interval: f64) -> Vec<[f64; 2]> {
     let continuous = |pole: Complex<f64>| {
         let rate = pole.re.hypot(pole.im).ln() / interval;
@@ -32,7 +32,7 @@ pub(super) fn figure(plant: &[[f64; 2]], kalman: &[[f64; 2]], luenberger: &[[f64
         .with(marks(KALMAN.0, kalman, KALMAN.1))
 }
 
-/// Poles of a flight's model.
+/// The poles of a flight's model.
 pub(super) fn of_model(flight: &Deviations) -> Result<Vec<[f64; 2]>, Error> {
     let interval = flight.log.interval_s;
     let step = flight.model.dynamics.over(interval, interval, &SVector::zeros());
@@ -40,7 +40,7 @@ pub(super) fn of_model(flight: &Deviations) -> Result<Vec<[f64; 2]>, Error> {
     Ok(of(&step.transition.a, interval))
 }
 
-/// Poles of a logged flight: of the model, of the filter when it has settled, and of the observer, if there is one.
+/// The poles of a logged flight: those of the model, of the settled filter, and of the observer, if there is one.
 pub(super) fn of_log(
     flight: &Deviations,
     options: &Options,
@@ -50,7 +50,7 @@ pub(super) fn of_log(
     let (interval, assumed) = (flight.log.interval_s, Assumed::of(model, outputs, options));
     let step = model.dynamics.over(interval, interval, &assumed.inputs.into());
     let step = step.map_err(|error| Error::Usage(error.to_string()))?;
-    // That of more states has other poles.
+    // A filter with further states has other poles.
     let filter = match outputs.len() {
         _ if model.extended.is_some() => None,
         1 => settled::<1>(model, outputs, &step, &assumed),
@@ -64,7 +64,7 @@ pub(super) fn of_log(
     Ok(figure(&of(&step.transition.a, interval), &filter, observer))
 }
 
-/// A − L C of the filter that a time-varying one settles at.
+/// A − L C of the steady state that a time-varying filter settles at.
 fn settled<const P: usize>(
     model: &Model,
     outputs: &[usize],

@@ -1,10 +1,10 @@
-//! A recorded flight for other programs.
+//! The streams of a recorded flight, for other programs.
 
 use crate::stream::Stream;
 use crate::systems::uav::simulate::plant::STREAM_COLUMNS;
 use crate::systems::uav::track::Track;
 
-/// Inputs, measurements, estimates and, where it is known, the truth: all as in the log.
+/// The inputs, measurements, estimates and, if known, the truth, in the coordinates of the log.
 pub fn streams(Track { flight, followed, .. }: &Track) -> Vec<Stream> {
     let unknown = |value: Option<f64>| value.unwrap_or(f64::NAN);
     let outputs: Vec<&str> = flight.names().collect();

@@ -1,4 +1,4 @@
-//! What other Q/R would come to on a recorded flight.
+//! The effect of other values of Q/R on a recorded flight.
 
 use kestirim_replay::uav::{Deviations, Followed, Options};
 use rayon::prelude::*;
@@ -7,32 +7,33 @@ use super::innovations::{autocorrelation, late, normalised};
 use crate::figure::{Colour, Figure, Mark, Series};
 use crate::metrics::{mean, rms};
 
-/// Exponents of ten of the factors, times two.
+/// The factors of the sweep, as exponents of √10.
 const STEPS: [i32; 9] = [-4, -3, -2, -1, 0, 1, 2, 3, 4];
-/// Those of a filter of more states.
+/// The factors of the sweep for a filter with further states, as exponents of √10.
 const FEW_STEPS: [i32; 5] = [-4, -2, 0, 2, 4];
-/// Lines of the flight that are followed with each, from its start: no more than a slider can wait for.
+/// The number of lines from the start of the flight that are tracked with each factor: no more than a slider can wait
+/// for.
 const LINES: usize = 4000;
-/// Those of a filter of more states.
+/// The number of lines that are tracked by a filter with further states.
 const FEW_LINES: usize = 1000;
-/// An outlier counts for no more than this, in standard deviations.
+/// The limit to which outliers are clamped, in standard deviations.
 const LARGEST: f64 = 3.2;
 
-/// What a filter makes of a flight.
+/// The results of a filter on a flight.
 #[derive(Debug, Clone, PartialEq)]
 struct Made {
-    /// Mean normalised innovation squared.
+    /// The mean normalised innovation squared.
     nis: f64,
     /// The largest |r(1)| of an output.
     lasting: f64,
-    /// Of each output: root mean square of what was measured beyond what was expected.
+    /// The root mean square innovation of each output.
     beyond: Vec<f64>,
-    /// Root mean square error of the states that are known; empty without a truth.
+    /// The root mean square errors of the states whose truth is known; empty without a truth.
     errors: Vec<f64>,
 }
 
 impl Made {
-    /// Of the later half.
+    /// The results over the second half of the flight.
     fn of(flight: &Deviations, followed: &Followed) -> Self {
         let outputs = normalised(followed);
         let lasting = |output: &Vec<Option<f64>>| {
@@ -58,8 +59,9 @@ impl Made {
     }
 }
 
-/// Consistency and whiteness of the innovations, their size, and errors where a truth is known, were Q/R another. None of it but the
-/// errors needs a truth: what was measured next is what each estimate is held against (Mehra, IEEE Trans. Automatic Control 15 (1970)).
+/// Consistency, whiteness and size of the innovations, and errors if a truth is known, for other values of Q/R. Only
+/// the errors need a truth: each estimate is judged by the next measurement (Mehra, IEEE Trans. Automatic Control 15
+/// (1970)).
 pub(super) fn of_log(flight: &Deviations, found: &Followed, options: &Options) -> Figure {
     let (steps, lines) = match flight.model.extended {
         Some(_) => (&FEW_STEPS[..], FEW_LINES),

@@ -1,4 +1,4 @@
-//! What only a simulated flight tells: what it is without noise, and what other settings would come to.
+//! Figures that only a simulated flight allows: the noise-free case, and the effect of other settings.
 
 use kestirim_replay::uav::{EstimatorKind, Noise, Options, faster};
 use kestirim_simulate::with_outputs;
@@ -13,10 +13,10 @@ use crate::systems::uav::simulate::design::{Kind, settled};
 use crate::systems::uav::simulate::flight::{Flight, Moment};
 use crate::systems::uav::simulate::scenario::{INTERVAL_S, SAMPLES};
 
-/// Factors of the sweep, of Q/R and of the poles: from a tenth to ten, four steps a half.
+/// The factors of Q/R and of the poles in the sweep, as powers of 10^(1/4): from a tenth to ten.
 const FACTORS: std::ops::RangeInclusive<i32> = -4..=4;
 
-/// Times to catch the plant were there no noise, poles, and errors with other settings.
+/// Adds the times to catch the plant without noise, the poles, and the errors with other settings.
 pub(super) fn draw(simulation: &Simulation, options: &Options, answer: &mut Answer) {
     let flight = &simulation.flight;
     let quiet = Flight { noise: Noise::NONE, samples: SAMPLES, ..*flight };
@@ -45,7 +45,7 @@ fn poles_of<const P: usize>(c: &SMatrix<f64, P, 4>, flight: &Flight, kinds: &[Ki
     poles::figure(&poles::of(&plant.a, INTERVAL_S), &kalman, &luenberger)
 }
 
-/// Settled errors by Lyapunov's equation, were Q/R or the poles different.
+/// The steady-state errors by Lyapunov's equation, for other values of Q/R or poles.
 fn against<const P: usize>(
     c: &SMatrix<f64, P, 4>,
     simulation: &Simulation,

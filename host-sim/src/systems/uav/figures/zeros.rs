@@ -1,4 +1,4 @@
-//! Zeros of a model, of each input as each output sees it.
+//! The zeros of a model, from each input to each output.
 
 use kestirim_observer_design::{Complex, Discrete, eigenvalues};
 use kestirim_replay::uav::Model;
@@ -8,14 +8,14 @@ use nalgebra::{RowSVector, SMatrix, SVector};
 
 use crate::figure::{Colour, Figure, Mark, Series};
 
-/// The inputs.
+/// The names of the inputs.
 const INPUTS: [&str; 2] = ["δe", "δt"];
-/// A leading coefficient that is smaller beside what it is the sum of is zero.
+/// The relative size, compared with its summands, below which a leading coefficient counts as zero.
 const NOTHING: f64 = 1e-10;
-/// Zeros that are so many times as far away as the farthest pole are beyond what is shown at first.
+/// The ratio to the magnitude of the farthest pole beyond which zeros are outside the initial view.
 const FAR: f64 = 3.0;
 
-/// Poles and zeros of a model in the complex plane.
+/// The poles and zeros of a model in the complex plane.
 pub(super) fn figure(model: &Model, outputs: &[usize], poles: &[[f64; 2]]) -> Figure {
     let farthest =
         |points: &[[f64; 2]]| points.iter().map(|[re, im]| re.hypot(*im)).fold(0.0, f64::max);
@@ -30,7 +30,7 @@ pub(super) fn figure(model: &Model, outputs: &[usize], poles: &[[f64; 2]]) -> Fi
             shown = shown.max(farthest(&near));
             let series = Series::points(format!("{name} → {}", model.outputs[output].0), zeros);
             let series = series.coloured(Colour::Other(place));
-            // The elevator's are those that handling qualities speak of.
+            // The zeros of the elevator are those relevant for handling qualities.
             all.push(if input == 0 { series } else { series.hidden() });
         }
     }
@@ -50,11 +50,12 @@ pub(super) fn figure(model: &Model, outputs: &[usize], poles: &[[f64; 2]]) -> Fi
         )
 }
 
-/// Zeros of c (s I − A)⁻¹ b + d for one input and one output, 1/s: of the two alone, not those that a system of all inputs and
-/// outputs at once may have, which with more outputs than inputs are none.
+/// The zeros of c (s I − A)⁻¹ b + d for one input and one output (1/s): those of this pair alone, not the transmission
+/// zeros of the whole system, of which there are none if there are more outputs than inputs.
 ///
-/// Of a model of discrete time they are logarithms of its zeros over its interval; zeros that sampling adds (left of the
-/// imaginary axis in the plane of z: Åström, Hagander & Sternby, Automatica 20 (1984)) belong to no continuous one.
+/// For a discrete-time model they are the logarithms of its zeros divided by its interval; zeros added by sampling
+/// (left of the imaginary axis in the z plane: Åström, Hagander & Sternby, Automatica 20 (1984)) correspond to no
+/// continuous ones.
 pub(super) fn of(model: &Model, input: usize, output: usize) -> Vec<[f64; 2]> {
     let row = RowSVector::from(model.outputs[output].1);
     let direct = model.extended.as_ref().map_or(0.0, |it| it.direct[output][input]);
@@ -64,7 +65,7 @@ pub(super) fn of(model: &Model, input: usize, output: usize) -> Vec<[f64; 2]> {
             zeros.into_iter().map(|zero| [zero.re, zero.im]).collect()
         }
         Dynamics::Discrete { step: Discrete { a, b }, interval } => {
-            // In (z − 1) / h, as A is almost 1.
+            // In terms of (z − 1) / h, as A is almost the identity.
             let rates = (a - SMatrix::identity()) / *interval;
             let b = b.column(input) / *interval;
             let continuous = |zero: Complex<f64>| {
@@ -77,7 +78,7 @@ pub(super) fn of(model: &Model, input: usize, output: usize) -> Vec<[f64; 2]> {
     }
 }
 
-/// Roots of the numerator, whose coefficients are those of Faddeev and Le Verrier.
+/// The roots of the numerator, whose coefficients follow from the algorithm of Faddeev and Le Verrier.
 fn of_pair(
     a: &SMatrix<f64, 4, 4>,
     b: &SVector<f64, 4>,
@@ -101,7 +102,7 @@ fn of_pair(
     leading.map_or_else(Vec::new, |first| roots(&numerator[first..]))
 }
 
-/// Of a polynomial, the highest power first: eigenvalues of its companion matrix.
+/// The roots of a polynomial, highest power first, as the eigenvalues of its companion matrix.
 fn roots(coefficients: &[f64]) -> Vec<Complex<f64>> {
     match coefficients.len() {
         2 => companion::<1>(coefficients),
@@ -139,7 +140,8 @@ mod tests {
         }
     }
 
-    /// In controllable canonical form: y / u = (numerator, from s³ on) / ((s + 1) (s + 2) (s² + 2 s + 5)), and the same from u₂.
+    /// A model in controllable canonical form: y / u = (numerator, from s³ on) / ((s + 1) (s + 2) (s² + 2 s + 5)), from
+    /// either input.
     fn canonical(numerator: [f64; 4]) -> Model {
         let a = SMatrix::from_row_slice(&[
             0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, -10.0, -19.0, -13.0, -5.0,
@@ -173,7 +175,7 @@ mod tests {
         let interval = 0.002;
         let step = zero_order_hold(&a, &b, interval).unwrap();
         model.dynamics = Dynamics::Discrete { step, interval };
-        // Zeros of a sampled system are those of the continuous one but for the interval's order.
+        // The zeros of a sampled system equal those of the continuous one to the order of the interval.
         assert_close(of(&model, 1, 0), &[[-3.0, 0.0], [-2.0, 0.0]], 0.02);
     }
 

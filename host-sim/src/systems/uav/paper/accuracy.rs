@@ -1,4 +1,4 @@
-//! Root mean square errors under noise, beside what the Lyapunov equation predicts.
+//! Root mean square errors under noise, beside those predicted by the Lyapunov equation.
 
 use kestirim_observer_design::Discrete;
 use kestirim_replay::uav::{FAST, MIDDLE, Noise, Plant, SLOW};
@@ -14,64 +14,64 @@ use crate::systems::uav::simulate::flight::Flight;
 use crate::systems::uav::simulate::plant::Outputs;
 use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR, SAMPLES, START};
 
-/// Samples after which an estimator that starts at the truth has settled: the slowest error of the experiment, that
-/// of the Navion's airspeed, has by then been forgotten to a hundredth.
+/// The number of samples after which an estimator started at the truth has settled: the slowest error of the
+/// experiment, that of the Navion's airspeed, has by then decayed to a hundredth.
 const SETTLING: usize = 2000;
 
-/// Estimators that fly together, on the same noise.
+/// A set of estimators that fly together, with the same noise.
 #[derive(Debug, Clone)]
 pub struct Cell {
     /// The aircraft.
     pub plant: Plant,
-    /// What is measured.
+    /// The measured outputs.
     pub outputs: Outputs,
-    /// The noise.
+    /// The noise of the flight.
     pub noise: Noise,
-    /// What the pilot does.
+    /// The pilot's inputs.
     pub inputs: Inputs,
-    /// Which part of the flight counts.
+    /// The part of the flight that is evaluated.
     pub window: Window,
     /// The estimators.
     pub kinds: Vec<Kind>,
 }
 
-/// Which part of a flight counts.
+/// The part of a flight that is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Window {
-    /// All of it, from a start that is off.
+    /// The whole flight, with an error at the start.
     Whole,
-    /// The last ten of thirty seconds, from the true start.
+    /// The last ten of thirty seconds, started at the truth.
     Settled,
 }
 
-/// A row of the table.
+/// A row of the table: the errors of one estimator.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
     /// The aircraft.
     pub plant: Plant,
-    /// What is measured.
+    /// The measured outputs.
     pub outputs: Outputs,
-    /// The noise.
+    /// The noise of the flight.
     pub noise: Noise,
-    /// What the pilot does.
+    /// The pilot's inputs.
     pub inputs: Inputs,
-    /// Which part of the flight counts.
+    /// The part of the flight that is evaluated.
     pub window: Window,
-    /// Which estimator.
+    /// The name of the estimator.
     pub estimator: String,
-    /// Of which family.
+    /// The family of the estimator.
     pub family: Family,
-    /// RMSE of α (rad), q (rad/s), V (m/s), θ (rad).
+    /// The RMSE of α (rad), q (rad/s), V (m/s), θ (rad).
     pub rmse: [f64; 4],
-    /// The same as predicted: from the Lyapunov equation when settled, else from its recursion.
+    /// The predicted RMSE: from the Lyapunov equation when settled, else from its recursion.
     pub predicted: [f64; 4],
-    /// Steps that the scalar could not take.
+    /// The number of steps that failed in the number type.
     pub refused: u32,
 }
 
 impl Row {
-    /// By which fraction the state that differs most differs from its prediction.
+    /// The relative difference from the prediction, of the state for which it is largest.
     pub fn off(&self) -> f64 {
         let ratios = self.rmse.iter().zip(&self.predicted).map(|(ours, ideal)| ours / ideal - 1.0);
         ratios.fold(0.0, |worst, ratio| if ratio.abs() > f64::abs(worst) { ratio } else { worst })
@@ -91,7 +91,7 @@ pub fn cells() -> Vec<Cell> {
             cells.push(Cell { plant, outputs, noise, inputs: Inputs::Constant, window, kinds });
         }
     }
-    // As the thesis has it: noise of one size, and what the filter takes it for; ten seconds from another start.
+    // As in the thesis: equal noise, which the filter assumes as well; ten seconds from another start.
     for (window, inputs) in [
         (Window::Settled, Inputs::Constant),
         (Window::Whole, Inputs::Constant),
@@ -110,7 +110,7 @@ pub fn cells() -> Vec<Cell> {
 }
 
 impl Cell {
-    /// So many flights.
+    /// The flights of the cell as a block of trials.
     pub fn block(&self, place: usize, scalar: ScalarKind, seed: u64, trials: u64) -> Block {
         let numbers = ["α", "q", "V", "θ"].map(|state| format!("sum of {state} error squared"));
         let numbers = [&numbers[..], &["refused".to_owned()]].concat();
@@ -136,7 +136,7 @@ impl Cell {
         })
     }
 
-    /// What came of the flights.
+    /// Evaluates the flights.
     pub fn rows(&self, flights: &Samples) -> Vec<Row> {
         let count = flights.len() as f64 * SAMPLES as f64;
         let row = |(place, kind): (usize, &Kind)| {
@@ -163,7 +163,7 @@ impl Cell {
         self.kinds.iter().enumerate().map(row).collect()
     }
 
-    /// RMSE of α, q, V, θ as predicted: from the Lyapunov equation when settled, else from its recursion.
+    /// The predicted RMSE of α, q, V, θ: from the Lyapunov equation when settled, else from its recursion.
     pub fn predicted(&self, kind: &Kind) -> [f64; 4] {
         with_outputs!(self.outputs, predicted, self, kind)
     }
@@ -172,13 +172,13 @@ impl Cell {
         if self.window == Window::Whole { NEAR } else { START }
     }
 
-    /// Samples before those that count.
+    /// The number of samples before those that are evaluated.
     fn settling(&self) -> usize {
         if self.window == Window::Whole { 0 } else { SETTLING }
     }
 }
 
-/// Numbers of a flight of one estimator: sums of squares of its errors, and steps that it could not take.
+/// The number of values per flight and estimator: the sums of its squared errors, and the number of failed steps.
 const NUMBERS: usize = 5;
 
 fn predicted<const P: usize>(c: &SMatrix<f64, P, 4>, cell: &Cell, kind: &Kind) -> [f64; 4] {
@@ -191,8 +191,8 @@ fn predicted<const P: usize>(c: &SMatrix<f64, P, 4>, cell: &Cell, kind: &Kind) -
     settled(c, &plant, kind, &cell.noise).expect("a stable estimator of the table")
 }
 
-/// Mean and covariance of the error, sample by sample, averaged: from an initial error that is no surprise to
-/// nobody but the estimator.
+/// The root mean square error over a flight, from the mean and covariance of the error propagated sample by sample. The
+/// initial error is given; only the estimator treats it as random.
 fn over_a_flight<const P: usize>(
     c: &SMatrix<f64, P, 4>,
     plant: &Discrete<4, 2>,

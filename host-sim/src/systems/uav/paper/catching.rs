@@ -1,4 +1,4 @@
-//! How long an estimator that starts somewhere else takes to catch the plant, without noise.
+//! The time that an estimator with a wrong start takes to catch the plant, without noise.
 
 use kestirim_replay::uav::{FAST, MIDDLE, Noise, Plant, SLOW};
 use nalgebra::SVector;
@@ -12,47 +12,47 @@ use crate::systems::uav::simulate::flight::{Flight, Moment};
 use crate::systems::uav::simulate::plant::Outputs;
 use crate::systems::uav::simulate::scenario::{FAR, Inputs, NEAR, SAMPLES, START};
 
-/// A start, and what follows.
+/// A noise-free flight of one estimator from a given start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chase {
     /// The aircraft.
     pub plant: Plant,
-    /// What is measured.
+    /// The measured outputs.
     pub outputs: Outputs,
-    /// Which estimator.
+    /// The estimator.
     pub kind: Kind,
-    /// Where it starts.
+    /// The estimator's start.
     pub start: [f64; 4],
-    /// What the pilot does.
+    /// The pilot's inputs.
     pub inputs: Inputs,
 }
 
-/// Errors x − x̂ of a run, sample by sample.
+/// The errors x − x̂ of a run, sample by sample.
 pub type Errors = Vec<SVector<f64, 4>>;
 
 impl Chase {
-    /// The errors, with the estimator in this scalar.
+    /// The errors, with the estimator in this number type.
     ///
     /// # Errors
-    /// Why there is no such estimator.
+    /// The reason why there is no such estimator.
     pub fn errors(&self, scalar: ScalarKind) -> Result<Errors, kestirim_uav_estimator::Error> {
         let errors = self.flight().follow(&self.kind, scalar, 0)?;
         Ok(errors.iter().map(Moment::error).collect())
     }
 
-    /// How far the start is off.
+    /// The error of the start.
     fn off(&self) -> SVector<f64, 4> {
         SVector::from(START) - SVector::from(self.start)
     }
 
-    /// Times to catch, s.
+    /// The times to catch each state (s).
     fn times(&self, scalar: ScalarKind) -> Option<[Option<f64>; 4]> {
         self.errors(scalar).ok().map(|errors| caught(&errors))
     }
 
-    /// What the error recursion alone leads to: neither plant nor input, in double precision.
+    /// The times to catch by the error recursion alone: with neither plant nor input, in double precision.
     fn predicted(&self) -> Option<[Option<f64>; 4]> {
-        // The plant rests at nothing, the estimator is as far off as ever.
+        // The plant rests at zero, with the same error of the estimator.
         let flight = Flight {
             inputs: Inputs::None,
             truth: [0.0; 4],
@@ -63,7 +63,7 @@ impl Chase {
         Some(caught(&moments.iter().map(Moment::error).collect::<Vec<_>>()))
     }
 
-    /// As a flight.
+    /// The flight to simulate.
     pub(super) fn flight(&self) -> Flight {
         let Self { plant, outputs, start, inputs, .. } = *self;
         let (noise, truth, samples) = (Noise::NONE, START, SAMPLES);
@@ -71,28 +71,28 @@ impl Chase {
     }
 }
 
-/// A row of the table.
+/// A row of the table: the times to catch of one estimator.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
     /// The aircraft.
     pub plant: Plant,
-    /// What is measured.
+    /// The measured outputs.
     pub outputs: Outputs,
-    /// Which estimator.
+    /// The name of the estimator.
     pub estimator: String,
-    /// Of which family.
+    /// The family of the estimator.
     pub family: Family,
-    /// Where it starts.
+    /// The estimator's start.
     pub start: [f64; 4],
-    /// What the pilot does.
+    /// The pilot's inputs.
     pub inputs: Inputs,
-    /// What the thesis reads off its figures for α, q, V and θ.
+    /// The values that the thesis reads off its figures for α, q, V and θ.
     pub published: Option<[&'static str; 4]>,
-    /// Where.
+    /// The figures of the thesis.
     pub source: Option<&'static str>,
-    /// Times to catch α, q, V, θ, s; none: not within ten seconds.
+    /// The times to catch α, q, V, θ (s); `None` means not within ten seconds.
     pub ours_s: Option<[Option<f64>; 4]>,
-    /// The same of the error recursion, in double precision.
+    /// The times to catch by the error recursion, in double precision (s).
     pub limit_s: Option<[Option<f64>; 4]>,
 }
 
@@ -116,7 +116,7 @@ pub fn rows(scalar: ScalarKind) -> Vec<Row> {
     all.collect()
 }
 
-/// The thesis' chases, with whatever gains and starts explain its figures.
+/// The thesis' chase with its Kalman filter, with the gain and start that explain its figures.
 pub const THESIS: Chase = Chase {
     plant: Plant::P2,
     outputs: Outputs::Full,
@@ -124,14 +124,14 @@ pub const THESIS: Chase = Chase {
     start: FAR,
     inputs: Inputs::Constant,
 };
-/// The same of its observer.
+/// The thesis' chase with its observer, with the poles and start that explain its figures.
 pub const THESIS_LUENBERGER: Chase = Chase { kind: Kind::Luenberger(SLOW), start: NEAR, ..THESIS };
-/// And under sine inputs.
+/// The thesis' chase with its observer under sine inputs.
 pub const THESIS_SINE: Chase =
     Chase { kind: Kind::Luenberger(FAST), inputs: Inputs::Sine, ..THESIS_LUENBERGER };
 
 impl Chase {
-    /// What the thesis says of it, and where.
+    /// The values in the thesis, and their source.
     fn published(&self) -> Option<([&'static str; 4], &'static str)> {
         [
             (THESIS, KALMAN_CAUGHT),
@@ -155,7 +155,7 @@ fn chases() -> Vec<Chase> {
             }
         }
     }
-    // Fewer outputs, other aircraft.
+    // Fewer outputs, and the other aircraft.
     for plant in [Plant::P2, Plant::P1, Plant::P3] {
         for outputs in Outputs::ALL {
             if (plant, outputs) == (Plant::P2, Outputs::Full) {
@@ -182,7 +182,7 @@ mod tests {
     use crate::systems::uav::account::states::BANDS;
     use crate::systems::uav::simulate::scenario::INTERVAL_S;
 
-    /// With a pole for each state, every error falls as e^(p·t).
+    /// With a pole for each state, every error decays as e^(p·t).
     #[test]
     fn times_follow_from_the_poles() {
         let chase = Chase { plant: Plant::P3, ..THESIS_LUENBERGER };

@@ -1,4 +1,4 @@
-//! What the thesis concludes, measured.
+//! The conclusions of the thesis, tested by measurements.
 
 use kestirim_observer_design::eigenvalues;
 use kestirim_replay::uav::{FAST, Noise, Plant, SLOW};
@@ -12,27 +12,27 @@ use crate::systems::uav::simulate::design::{Family, Kind};
 use crate::systems::uav::simulate::plant::Outputs;
 use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR};
 
-/// A claim in one setting.
+/// A claim tested in one setting.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Claim {
-    /// What is claimed.
+    /// The claim.
     pub claim: &'static str,
-    /// Where.
+    /// The setting in which it is tested.
     pub setting: &'static str,
-    /// Of α, q, V, θ with the Kalman filter: RMSE (rad, rad/s, m/s, rad) or times to catch (s).
+    /// The results of the Kalman filter for α, q, V, θ: RMSE (rad, rad/s, m/s, rad) or times to catch (s).
     pub kalman: [f64; 4],
-    /// The same with the best Luenberger observer of the table, state by state.
+    /// The results of the best Luenberger observer of the table, state by state.
     pub luenberger: [f64; 4],
-    /// Whether it is true of every state.
+    /// Whether the claim holds for every state.
     pub holds: bool,
 }
 
-/// With noise.
+/// The claim for flights with noise.
 const NOISY: &str = "with noise, Kalman better on every state";
-/// Without.
+/// The claim for flights without noise.
 const QUIET: &str = "without noise, Luenberger faster on every state";
 
-/// All claims, from the rows of the tables.
+/// The claims, evaluated from the rows of the tables.
 pub fn claims(caught: &[catching::Row], accuracy: &[accuracy::Row]) -> Vec<Claim> {
     let thesis = Kind::Ratio(1e-2).name();
     let noisy = [
@@ -85,7 +85,7 @@ pub fn claims(caught: &[catching::Row], accuracy: &[accuracy::Row]) -> Vec<Claim
     noisy.chain(quiet).collect()
 }
 
-/// Of the thesis' aircraft and outputs, with constant inputs.
+/// The smallest RMSE of each state, for the thesis' aircraft and outputs with constant inputs.
 fn best_rmse(
     rows: &[accuracy::Row],
     family: Family,
@@ -103,7 +103,8 @@ fn best_rmse(
     rows.map(|row| row.rmse).reduce(least)
 }
 
-/// Of the thesis' aircraft, outputs, inputs and the near start; what is never caught counts as infinity.
+/// The shortest time to catch each state, for the thesis' aircraft, outputs and inputs and the near start; never counts
+/// as infinity.
 fn best_time(rows: &[catching::Row], family: Family, name: Option<&str>) -> Option<[f64; 4]> {
     let rows = rows.iter().filter(|row| {
         (row.plant, row.outputs, row.inputs) == (Plant::P2, Outputs::Full, Inputs::Constant)
@@ -119,17 +120,17 @@ fn least(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
     std::array::from_fn(|state| a[state].min(b[state]))
 }
 
-/// A steady-state filter's slowest poles, 1/s: with its process noise on the inputs they go to the plant's zeros,
-/// and no further, however little it trusts its model.
+/// The slowest poles of a steady-state filter (1/s): with process noise on the inputs they approach the plant's zeros
+/// and no further, however little the filter trusts its model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SlowestPoles {
-    /// Variance of the inputs' noise beside that of the outputs'.
+    /// The ratio of the variances of the inputs' and the outputs' noise.
     pub ratio: f64,
-    /// Slowest first.
+    /// The two slowest poles, the slowest first.
     pub poles: [f64; 2],
 }
 
-/// Of the thesis' aircraft.
+/// The slowest poles for the thesis' aircraft.
 pub fn slowest_poles() -> Vec<SlowestPoles> {
     let plant = Plant::P2.discrete(INTERVAL_S);
     let row = |ratio: f64| {
@@ -142,18 +143,18 @@ pub fn slowest_poles() -> Vec<SlowestPoles> {
     [1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6, 1e8].into_iter().map(row).collect()
 }
 
-/// e⁺ = (A − L·C)·e: what the pilot does is not in it.
+/// A test that the errors are independent of the inputs, as e⁺ = (A − L·C)·e does not contain them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Independence {
-    /// Which estimator.
+    /// The name of the estimator.
     pub estimator: String,
-    /// Largest error of α, q, V, θ in ten seconds of constant inputs.
+    /// The largest errors of α, q, V, θ in ten seconds of constant inputs.
     pub largest_error: [f64; 4],
-    /// Largest difference between the errors under sine and constant inputs, at any sample.
+    /// The largest difference between the errors under sine and constant inputs, over all samples.
     pub difference: [f64; 4],
 }
 
-/// Of the thesis' aircraft.
+/// The tests for the thesis' aircraft.
 pub fn independence(scalar: ScalarKind) -> Vec<Independence> {
     let kinds = [
         Kind::Ratio(1e-2),

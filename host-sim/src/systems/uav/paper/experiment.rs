@@ -9,13 +9,13 @@ use super::{accuracy, catching, claims, responses};
 use crate::Error;
 use crate::system::{RunOptions, ScalarKind, choose_scalar};
 
-/// Flights a cell unless told otherwise: a RMSE is then known to one or two percent.
+/// The default number of flights per cell, which determines an RMSE to one or two percent.
 const TRIALS: u64 = 500;
 
-/// The flights of each cell.
+/// The trials: the flights of each cell.
 ///
 /// # Errors
-/// If the scalar is not supported.
+/// If the number type is not supported.
 pub fn trials(options: RunOptions) -> Result<Vec<Block>, Error> {
     let scalar = choose_scalar("uav", options.scalar, &ScalarKind::ALL, ScalarKind::F32)?;
     let trials = options.trials.unwrap_or(TRIALS);
@@ -23,10 +23,10 @@ pub fn trials(options: RunOptions) -> Result<Vec<Block>, Error> {
     Ok(cells.map(|(place, cell)| cell.block(place, scalar, options.seed, trials)).collect())
 }
 
-/// What came of them, and what needs no trials.
+/// Evaluates the samples of the trials, and adds the results that need no trials.
 ///
 /// # Errors
-/// As [`trials`].
+/// Those of [`trials`].
 pub fn report(options: RunOptions, samples: &[Samples]) -> Result<Report, Error> {
     let scalar = choose_scalar("uav", options.scalar, &ScalarKind::ALL, ScalarKind::F32)?;
     let cells = accuracy::cells().into_iter().zip(samples);

@@ -1,4 +1,4 @@
-//! The thesis' experiments on synthetic flights, beside what it says of its own.
+//! The thesis' experiments on synthetic flights, compared with its own statements.
 
 pub mod accuracy;
 pub mod catching;

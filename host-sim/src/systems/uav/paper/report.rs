@@ -1,4 +1,4 @@
-//! What the command prints.
+//! The report that the command prints.
 
 use std::fmt;
 
@@ -17,28 +17,28 @@ use crate::systems::uav::paper::published::{CONSTANT_INPUTS, SETTLING_S};
 use crate::systems::uav::simulate::plant::STATES;
 use crate::systems::uav::simulate::scenario::Inputs;
 
-/// All experiments.
+/// The results of all experiments.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
     /// Always `uav`.
     pub system: &'static str,
     /// Seed of all randomness.
     pub seed: u64,
-    /// Number type of the estimators.
+    /// The number type of the estimators.
     pub scalar: ScalarKind,
-    /// Flights a cell of the accuracies.
+    /// The number of flights per cell of the accuracies.
     pub trials: usize,
-    /// The plants by themselves.
+    /// The responses of the plants.
     pub plants: Vec<Responses>,
-    /// Times to catch the plant.
+    /// The times to catch the plant.
     pub catching: Vec<catching::Row>,
-    /// Errors under noise.
+    /// The errors under noise.
     pub accuracy: Vec<accuracy::Row>,
-    /// How fast a steady-state filter can get.
+    /// The slowest poles of a steady-state filter.
     pub slowest_poles: Vec<SlowestPoles>,
-    /// That errors do not depend on the inputs.
+    /// The independence of the errors from the inputs.
     pub independence: Vec<Independence>,
-    /// What the thesis concludes.
+    /// The conclusions of the thesis.
     pub claims: Vec<Claim>,
 }
 
@@ -108,7 +108,7 @@ fn constant_inputs(rows: &[Responses]) -> Table {
     table
 }
 
-/// What the thesis says of its Figs 5.5 to 5.8, and what comes out: quantity, published, ours.
+/// The thesis' statements about its Figs 5.5 to 5.8 and our results: quantity, published, ours.
 pub(super) fn said_of_constant_inputs(rows: &[Responses]) -> Vec<[String; 3]> {
     let Some(row) = rows.iter().find(|row| row.plant == Plant::P2) else { return Vec::new() };
     let samples = &row.constant_inputs;
@@ -132,12 +132,12 @@ pub(super) fn said_of_constant_inputs(rows: &[Responses]) -> Vec<[String; 3]> {
     both.map(|([name, published], ours)| [name.to_owned(), published.to_owned(), ours]).collect()
 }
 
-/// Four numbers of the states, beside each other.
+/// Four numbers of the states, as text.
 pub(super) fn four(numbers: [f64; 4]) -> String {
     numbers.map(|number| format!("{number:.1e}")).join(" ")
 }
 
-/// How many of the chases take as long with sine inputs as with constant ones.
+/// The number of chases that take as long with sine inputs as with constant ones, as text.
 pub(super) fn alike(rows: &[catching::Row]) -> String {
     let of = |inputs| rows.iter().filter(move |row| row.inputs == inputs);
     let twin = |row: &&catching::Row| {
@@ -166,7 +166,7 @@ fn caught(rows: &[catching::Row]) -> Table {
     let states = STATES.join(" ");
     let header = ["plant", "outputs", "inputs", "start", "estimator", "published"];
     table.set_header(header.map(str::to_owned).into_iter().chain([states, "limit".to_owned()]));
-    // The others with sine inputs are in the JSON.
+    // The other rows with sine inputs are in the JSON output.
     let shown = rows.iter().filter(|row| row.inputs != Inputs::Sine || row.published.is_some());
     for row in shown {
         let published = match (row.published, row.source) {

@@ -1,4 +1,4 @@
-//! What the plants do by themselves: the thesis' chapter 5.
+//! The responses of the plants without an estimator: the thesis' chapter 5.
 
 use kestirim_observer_design::{self as design, Complex, controllability, eigenvalues};
 use kestirim_observer_design::{observability, singular_values};
@@ -12,82 +12,83 @@ use crate::random::stream;
 use crate::systems::uav::simulate::plant::Outputs;
 use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, SAMPLES, START, fly};
 
-/// Samples of a step response, 25 min in all, …
+/// The number of samples of a step response, 25 min in all.
 const STEP_SAMPLES: usize = 30_000;
-/// … and the time between them, s.
+/// The time between the samples of a step response (s).
 const STEP_INTERVAL_S: f64 = 0.05;
-/// A response has settled where it stays within this share.
+/// The share of the final value within which a response counts as settled.
 const SETTLED: f64 = 0.02;
-/// A final value that is smaller than this beside the peak is zero.
+/// The ratio to the peak below which a final value counts as zero.
 const NOTHING: f64 = 1e-9;
-/// Of a plotted response: samples, so many samples of the computed one apart.
+/// The number of samples of a plotted response, which are evenly spaced among those computed.
 const PLOTTED: usize = 600;
 
-/// Logarithm of the ratio of neighbouring frequencies: twenty a decade, from 0.001 to 100 rad/s.
+/// The logarithm of the ratio of neighbouring frequencies: twenty per decade, from 0.001 to 100 rad/s.
 const BODE_STEP: f64 = std::f64::consts::LN_10 / 20.0;
 
-/// A plant's own behaviour.
+/// The responses of a plant.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Responses {
     /// The aircraft.
     pub plant: Plant,
-    /// Poles, real and imaginary parts, 1/s.
+    /// The real and imaginary parts of the poles (1/s).
     pub poles: [[f64; 2]; 4],
-    /// How well the outputs see the mode they see least: smallest singular value of the PBH test.
+    /// The observability of the least observable mode for each choice of outputs: the smallest singular value of the
+    /// PBH test.
     pub observability: Vec<Visibility>,
-    /// How well the inputs move the mode they move least.
+    /// The controllability of the least controllable mode.
     pub controllability: f64,
-    /// Settling times to 2 % of the final value (of the peak, where that is zero), s: a row an input, a column a
-    /// state.
+    /// The settling times to 2 % of the final value, or of the peak where that is zero (s): a row per input, a column
+    /// per state.
     pub settling_s: [[f64; 4]; 2],
-    /// Final values of unit steps.
+    /// The final values of unit step responses.
     pub static_gain: [[f64; 4]; 2],
-    /// Largest gain over all frequencies and directions of the input, and at which frequency (rad/s).
+    /// The largest gain over all frequencies and input directions, and its frequency (rad/s).
     pub peak: Peak,
-    /// Step responses: `[input][sample][state]`, at `step_times_s`.
+    /// The step responses, as `[input][sample][state]`, at `step_times_s`.
     pub step: [Vec<[f64; 4]>; 2],
-    /// Impulse responses likewise.
+    /// The impulse responses, as `[input][sample][state]`, at `step_times_s`.
     pub impulse: [Vec<[f64; 4]>; 2],
-    /// s.
+    /// The times of the samples (s).
     pub step_times_s: Vec<f64>,
-    /// Frequency response.
+    /// The frequency response.
     pub bode: Vec<Bode>,
-    /// The thesis' constant inputs: t and the state.
+    /// The response to the thesis' constant inputs: t and the state.
     pub constant_inputs: Vec<[f64; 5]>,
 }
 
-/// Of one choice of outputs.
+/// The observability with one choice of outputs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Visibility {
-    /// What is measured.
+    /// The measured outputs.
     pub outputs: Outputs,
-    /// Smallest singular value.
+    /// The smallest singular value.
     pub least: f64,
 }
 
-/// The highest point of the largest singular value.
+/// The maximum of the largest singular value.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Peak {
-    /// rad/s.
+    /// The frequency (rad/s).
     pub omega: f64,
-    /// Largest singular value there.
+    /// The largest singular value at that frequency.
     pub gain: f64,
 }
 
-/// A frequency.
+/// The response at one frequency.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Bode {
-    /// rad/s.
+    /// The frequency (rad/s).
     pub omega: f64,
-    /// |G|: a row a state, a column an input.
+    /// The gain |G|, with a row per state and a column per input.
     pub magnitude: [[f64; 2]; 4],
-    /// arg G, rad.
+    /// The phase arg G (rad), with a row per state and a column per input.
     pub phase: [[f64; 2]; 4],
-    /// Largest and smallest.
+    /// The largest and the smallest singular value.
     pub singular_values: [f64; 2],
 }
 
-/// Of a plant.
+/// Computes the responses of a plant.
 pub fn responses(plant: Plant) -> Responses {
     const FINITE: &str = "a plant of the experiment";
     let StateSpace { a, b } = plant.model();
@@ -132,10 +133,10 @@ pub fn responses(plant: Plant) -> Responses {
     }
 }
 
-/// When a response was outside its band for the last time, s.
+/// The time from which on each response stays within its band (s).
 fn settling(samples: &[SVector<f64, 4>], last: &[f64; 4]) -> [f64; 4] {
     std::array::from_fn(|state| {
-        // A pitch angle that comes to rest leaves q nothing to settle at.
+        // A pitch angle that comes to rest leaves q with a final value of zero.
         let peak = samples.iter().fold(0.0, |peak, sample| f64::max(peak, sample[state].abs()));
         let size = if last[state].abs() < NOTHING * peak { peak } else { last[state].abs() };
         let outside =
@@ -168,7 +169,7 @@ fn bode(system: &design::StateSpace<4, 2, 4>, omega: f64) -> Bode {
     }
 }
 
-/// The phugoid's resonance: the highest of the Bode diagram's points, then between its neighbours.
+/// The phugoid's resonance: the highest point of the Bode diagram, refined between its neighbours.
 fn peak(system: &design::StateSpace<4, 2, 4>, bode: &[Bode]) -> Peak {
     let highest = bode.iter().max_by(|a, b| a.singular_values[0].total_cmp(&b.singular_values[0]));
     let mut best = highest.map_or(Peak { omega: 1.0, gain: 0.0 }, |point| Peak {
@@ -202,8 +203,8 @@ fn constant_inputs(plant: Plant) -> Vec<[f64; 5]> {
 }
 
 impl Responses {
-    /// Short period and phugoid: natural frequency √(p₁ p₂) (rad/s) and damping ratio −(p₁ + p₂)/2 √(p₁ p₂) of the two
-    /// fastest and the two slowest poles, be they real or a pair.
+    /// The natural frequency √(p₁ p₂) (rad/s) and damping ratio −(p₁ + p₂)/2 √(p₁ p₂) of short period and phugoid: of
+    /// the two fastest and the two slowest poles, whether real or a pair.
     pub fn modes(&self) -> [[f64; 2]; 2] {
         let mut poles = self.poles;
         poles.sort_by(|a, b| b[0].hypot(b[1]).total_cmp(&a[0].hypot(a[1])));
@@ -224,7 +225,7 @@ mod tests {
         let responses = responses(Plant::P2);
         assert!(responses.peak.gain > 14_000.0 && (responses.peak.omega - 0.156).abs() < 1e-3);
         let [[short, damped], [phugoid, lightly]] = responses.modes();
-        // Poles at −18.5 and −3.3: not a swing at all.
+        // The poles at −18.5 and −3.3 do not oscillate.
         assert!((short - 7.8).abs() < 0.1 && (damped - 1.39).abs() < 0.02, "{short} {damped}");
         assert!((phugoid - 0.1565).abs() < 1e-3 && (lightly - 0.0424).abs() < 1e-3);
     }

@@ -1,4 +1,4 @@
-//! Recorded flights, and what is known of their truth.
+//! Logs of flights, and their true states.
 
 use std::path::Path;
 
@@ -10,15 +10,15 @@ use crate::Error;
 use crate::table::{self, Column, Found, Header};
 use crate::text::{self, printable};
 
-/// An aircraft's sensors are read so often, s.
+/// The usual range of the time between samples of an aircraft's sensors (s).
 const USUAL_STEP_S: [f64; 2] = [5e-4, 2.0];
-/// No sensor of an aircraft measures more, in any unit.
+/// The largest plausible value of an aircraft's sensor, in any unit.
 pub(in crate::systems::uav) const LARGEST: f64 = 1e6;
 
-/// Reads what an autopilot logged, or columns `t`, `delta_e`, `delta_t` and those of the model's outputs that there are.
+/// Reads the log of an autopilot, or a table with columns `t`, `delta_e`, `delta_t` and any of the model's outputs.
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read(path: &Path, names: &[&str], options: &Options) -> Result<(Log, Found), Error> {
     let bytes = text::bytes(path)?;
     let flight = flight::read(&bytes, options).map_err(|error| table::refused(path, &error))?;
@@ -35,10 +35,10 @@ pub fn read(path: &Path, names: &[&str], options: &Options) -> Result<(Log, Foun
     Ok((log, found))
 }
 
-/// Which outputs there are, the samples, and how they were read.
+/// The indices of the outputs, the samples, and how they were read.
 type Contents = (Vec<usize>, Vec<Sample>, Found);
 
-/// The model's outputs that are states which an autopilot logs.
+/// Selects the model's outputs that are states logged by an autopilot.
 fn of_autopilot(path: &Path, names: &[&str], flight: Flight) -> Result<Contents, Error> {
     let state = |name: &str| STATE_COLUMNS.iter().position(|state| *state == name);
     let columns: Vec<_> = names
@@ -131,7 +131,7 @@ fn measured_columns(header: &Header<'_>, names: &[&str]) -> Result<Vec<(usize, C
 /// Reads columns `t` and some of `alpha`, `q`, `V`, `theta`.
 ///
 /// # Errors
-/// The file, the line, and what was expected there.
+/// An error that names the file, the line, and what was expected there.
 pub fn read_truth(path: &Path) -> Result<Truth, Error> {
     let mut truth = Truth::new();
     table::read(

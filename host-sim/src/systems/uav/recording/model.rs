@@ -1,4 +1,4 @@
-//! The model of an aircraft from a file.
+//! Files of aircraft models.
 
 use std::path::Path;
 
@@ -7,10 +7,11 @@ use kestirim_replay::uav::{Model, ModelFile};
 use crate::text::{TextFile, printable_path};
 use crate::{Error, output};
 
-/// What is in a file.
+/// Reads a model.
 ///
 /// # Errors
-/// [`Error::Usage`] if there is no such file; else the file, the line, and what was expected there.
+/// [`Error::Usage`] if there is no such file; otherwise an error that names the file, the line, and what was expected
+/// there.
 pub fn read(path: &Path) -> Result<Model, Error> {
     if !path.exists() {
         return Err(Error::Usage(format!(

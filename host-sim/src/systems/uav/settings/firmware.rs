@@ -1,4 +1,4 @@
-//! The same settings in firmware: the estimator of `kestirim-uav-estimator`, with its model as numbers.
+//! The equivalent configuration of firmware: the estimator of `kestirim-uav-estimator`, with its model as numbers.
 
 use std::fmt::Write;
 
@@ -16,10 +16,10 @@ use crate::system::{Literal, ScalarKind, Settings};
 use crate::systems::uav::recording::Recording;
 use crate::systems::uav::simulate::scenario::{INTERVAL_S, START};
 
-/// Outputs and interval of a flight that nobody recorded: q, V and θ.
+/// The outputs and interval assumed without a recording: q, V and θ.
 const USUAL: ([usize; 3], f64) = ([1, 2, 3], 0.01);
 
-/// Rust that makes the estimator. What it makes is a `Result`, for firmware to look at.
+/// The Rust source that builds the estimator. It yields a `Result`, which firmware must check.
 pub(in crate::systems::uav) fn firmware(
     recording: Option<&Recording>,
     settings: &Settings,
@@ -46,7 +46,7 @@ fn scalar(kind: ScalarKind) -> &'static str {
     }
 }
 
-/// A filter or observer of samples with gaps.
+/// The source of a filter or observer for samples with gaps.
 fn logged(model: &Model, outputs: &[usize], interval: f64, options: &Options) -> String {
     let count = outputs.len();
     let (dynamics, import) = match &model.dynamics {
@@ -72,7 +72,7 @@ fn logged(model: &Model, outputs: &[usize], interval: f64, options: &Options) ->
         7 => columns(&rows::<7>(model, outputs)),
         _ => columns(&rows::<8>(model, outputs)),
     };
-    // The matrices are designed in f64, whatever the estimator computes in.
+    // The matrices are designed in f64, independent of the estimator's number type.
     let literal =
         Literal::new("kestirim_uav_estimator::Dynamics", ScalarKind::F64, "Dynamics", &dynamics)
             .import(import);
@@ -108,7 +108,7 @@ fn logged(model: &Model, outputs: &[usize], interval: f64, options: &Options) ->
     .to_string()
 }
 
-/// How many states there are, how many of them move the four, and outputs.
+/// The number of states, the number of further states that move the four, and the number of outputs.
 fn sizes(parts: &Parts) -> [usize; 3] {
     let states = |moving| {
         let sizes = parts.unknown.iter().map(Unknown::moves);
@@ -118,7 +118,7 @@ fn sizes(parts: &Parts) -> [usize; 3] {
     [k + states(false), k, parts.outputs.len()]
 }
 
-/// A model of more than the four states, where `plant` is an expression for A and B.
+/// The source of a model with further states, where `plant` is an expression for A and B.
 fn augmented_model(parts: &Parts, plant: &str) -> String {
     let [n, k, p] = sizes(parts);
     let outputs: Vec<_> = parts.outputs.iter().map(|output| format!("    {output:?},\n")).collect();
@@ -138,7 +138,7 @@ fn augmented_model(parts: &Parts, plant: &str) -> String {
     )
 }
 
-/// A filter of more than the four states.
+/// The source of a filter with further states.
 fn augmented(model: &Model, parts: &Parts, interval: f64, scalar: &str) -> Literal {
     let [n, k, p] = sizes(parts);
     let config = format!("StateSpace {}", plant_of(model));
@@ -158,7 +158,7 @@ fn augmented(model: &Model, parts: &Parts, interval: f64, scalar: &str) -> Liter
     ))
 }
 
-/// The same of models at several airspeeds; none if one of them has no trim.
+/// The source of an estimator with models at several airspeeds; `None` if one of them has no trim.
 fn scheduled(
     origin: &Model,
     outputs: &[usize],
@@ -211,14 +211,14 @@ fn scheduled(
     )
 }
 
-/// A and B of a model.
+/// The source of A and B of a model.
 fn plant_of(model: &Model) -> String {
     let (Dynamics::Continuous(StateSpace { a, b })
     | Dynamics::Discrete { step: Discrete { a, b }, .. }) = &model.dynamics;
     plant(a, b)
 }
 
-/// An estimator of samples at one rate.
+/// The source of an estimator for samples at a constant rate.
 fn simulated<const P: usize>(
     c: &SMatrix<f64, P, 4>,
     simulation: &Simulation,
@@ -265,12 +265,12 @@ fn simulated<const P: usize>(
     }
 }
 
-/// The fields A and B.
+/// The source of the fields A and B.
 fn plant(a: &SMatrix<f64, 4, 4>, b: &SMatrix<f64, 4, 2>) -> String {
     format!("{{\n    a: {},\n    b: {},\n}}", columns(a), columns(b))
 }
 
-/// A matrix as the array of its columns.
+/// The source of a matrix, as the array of its columns.
 fn columns<const R: usize, const C: usize>(matrix: &SMatrix<f64, R, C>) -> String {
     let columns = matrix.column_iter();
     let columns = columns.map(|column| format!("{:?}", column.iter().collect::<Vec<_>>()));

@@ -1,19 +1,19 @@
-//! Lists of numbers, as texts.
+//! Parsing of lists of numbers.
 
 use kestirim_observer_design::Complex;
 
-/// Two standard deviations.
+/// Parses two standard deviations.
 ///
 /// # Errors
-/// In words: what was expected.
+/// A sentence that says what was expected.
 pub fn two_numbers(text: &str) -> Result<[f64; 2], String> {
     numbers(text, "two numbers above 0")
 }
 
-/// Four standard deviations.
+/// Parses four standard deviations.
 ///
 /// # Errors
-/// In words: what was expected.
+/// A sentence that says what was expected.
 pub fn four_numbers(text: &str) -> Result<[f64; 4], String> {
     numbers(text, "four numbers above 0")
 }
@@ -26,10 +26,10 @@ fn numbers<const N: usize>(text: &str, expected: &str) -> Result<[f64; N], Strin
     parsed.and_then(|all| all.try_into().ok()).ok_or_else(|| format!("expected {expected}"))
 }
 
-/// Four poles such as −3 or −3+2i, each complex one with its conjugate.
+/// Parses four poles such as −3 or −3+2i, each complex one with its conjugate.
 ///
 /// # Errors
-/// In words: what was expected.
+/// A sentence that says what was expected.
 pub fn poles(text: &str) -> Result<[Complex<f64>; 4], String> {
     let expected =
         || "expected four poles left of 0, such as -3 or -3+2i, with conjugates".to_owned();
@@ -45,7 +45,7 @@ fn pole(text: &str) -> Option<Complex<f64>> {
     let Some(both) = text.strip_suffix(['i', 'j']) else {
         return Some(Complex { re: text.parse().ok()?, im: 0.0 });
     };
-    // The last sign that is none of an exponent parts the two.
+    // The last sign that is not part of an exponent separates the two parts.
     let sign = both.char_indices().rev().find(|&(place, sign)| {
         (sign == '+' || sign == '-') && place > 0 && !both[..place].ends_with(['e', 'E'])
     })?;

@@ -1,4 +1,4 @@
-//! A Bosch BNO055 on I²C, as far as the rate and the angle of pitch go.
+//! Simulates a Bosch BNO055 on I²C: its pitch rate and pitch angle.
 
 use core::f32::consts::PI;
 
@@ -15,18 +15,18 @@ const RESET: u8 = 0x20;
 const OPR_MODE: usize = 0x3D;
 const NDOF: u8 = 0x0C;
 
-/// A sixteenth of a degree.
+/// A sixteenth of a degree, rad.
 const STEP: f32 = PI / 180.0 / 16.0;
 
-/// Measures what a recording of a flight says: its third and fifth number, pitch rate (rad/s) and pitch (rad).
-/// Its y axis is the aeroplane's.
+/// A chip that measures what a recording of a flight holds: its third and fifth number, pitch rate (rad/s) and pitch
+/// (rad). Its y axis is the aeroplane's.
 pub struct Bno055<'a> {
     recording: &'a Recording<5>,
     registers: Registers<128>,
 }
 
 impl<'a> Bno055<'a> {
-    /// As it is after it got power.
+    /// The chip after power-on.
     pub const fn new(recording: &'a Recording<5>) -> Self {
         Self { recording, registers: Registers::new() }
     }
@@ -44,7 +44,7 @@ impl Device for Bno055<'_> {
 
     fn read(&mut self, bytes: &mut [u8]) {
         self.registers.set(CHIP_ID, &[0xA0]);
-        // Only the fusion knows a pitch.
+        // Only the fusion mode yields a pitch.
         if self.registers.get(OPR_MODE) == NDOF {
             let [_, _, rate, _, pitch] = self.recording.values();
             self.registers.set(GYR_DATA_Y, &steps(rate, STEP).to_le_bytes());

@@ -1,4 +1,4 @@
-//! The first serial port of the machine `mps2-an386`, for who is told by its interrupts.
+//! The first serial port of the machine `mps2-an386`, for programs that use its interrupts.
 
 use crate::registers::Register;
 
@@ -12,40 +12,40 @@ const DIVIDER: Register = Register::at(BASE + 0x10);
 const SENDING: u32 = 1 << 0;
 const RECEIVED: u32 = 1 << 1;
 
-/// The port's registers: a byte each way, and an interrupt each.
+/// The port's registers: one byte and one interrupt in each direction.
 #[derive(Clone, Copy, Debug)]
 pub struct CmsdkPort(());
 
 impl CmsdkPort {
-    /// Sender and receiver, and the interrupts of both.
+    /// The enable bits of sender and receiver, and of the interrupts of both.
     const ENABLE: u32 = 0b1111;
-    /// The least that the port accepts, for the highest rate; QEMU sends at once.
+    /// The smallest divider that the port accepts, for the highest rate; QEMU sends at once.
     const FASTEST: u32 = 16;
 
-    /// Turns on the first port, which QEMU's first `-serial` is connected to. Its interrupts are still masked.
+    /// Turns on the first port, which QEMU connects to its first `-serial`. Its interrupts are still masked.
     pub fn first() -> Self {
         DIVIDER.write(Self::FASTEST);
         CONTROL.write(Self::ENABLE);
         Self(())
     }
 
-    /// The same port in a handler of its interrupts: it is turned on, or there would be none.
+    /// The same port within a handler of its interrupts, where it is already turned on.
     pub fn served() -> Self {
         Self(())
     }
 
-    /// Takes the byte that has arrived, if there is one. Until it is taken, the other side waits.
+    /// Takes the received byte, if there is one. Until it is taken, the other side waits.
     pub fn receive(self) -> Option<u8> {
         INTERRUPTS.write(RECEIVED);
         (STATE.read() & RECEIVED != 0).then(|| DATA.read() as u8)
     }
 
-    /// Leaves the byte where it is: the handler's answer to an interrupt when there is no room.
+    /// Acknowledges the interrupt but leaves the byte in the port, for a handler that has no room for it.
     pub fn postpone(self) {
         INTERRUPTS.write(RECEIVED);
     }
 
-    /// Sends a byte, unless the one before is still on its way.
+    /// Sends a byte, unless the previous one is still being sent.
     pub fn send(self, byte: u8) -> bool {
         let is_free = !self.is_sending();
         if is_free {
@@ -54,12 +54,12 @@ impl CmsdkPort {
         is_free
     }
 
-    /// Whether a byte is still on its way.
+    /// Whether a byte is still being sent.
     pub fn is_sending(self) -> bool {
         STATE.read() & SENDING != 0
     }
 
-    /// Takes note that a byte has been sent.
+    /// Acknowledges the interrupt after a byte has been sent.
     pub fn sent(self) {
         INTERRUPTS.write(SENDING);
     }

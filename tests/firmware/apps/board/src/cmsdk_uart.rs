@@ -1,4 +1,4 @@
-//! The first serial port of the machine `mps2-an386`: that of Arm's Cortex-M System Design Kit.
+//! The first serial port of the machine `mps2-an386`, of Arm's Cortex-M System Design Kit.
 
 use core::convert::Infallible;
 
@@ -12,16 +12,16 @@ const STATE: Register = Register::at(BASE + 0x04);
 const CONTROL: Register = Register::at(BASE + 0x08);
 const DIVIDER: Register = Register::at(BASE + 0x10);
 
-/// A serial port of another machine than [`Uart`](crate::Uart)'s.
+/// A polled serial port, on another machine than [`Uart`](crate::Uart).
 pub struct CmsdkUart(());
 
 impl CmsdkUart {
     const TRANSMIT_FULL: u32 = 1;
     const TRANSMIT_ENABLE: u32 = 1;
-    /// The least that the port accepts, for the highest rate; QEMU sends at once.
+    /// The smallest divider that the port accepts, for the highest rate; QEMU sends at once.
     const FASTEST: u32 = 16;
 
-    /// Turns on the first port, which QEMU's first `-serial` is connected to.
+    /// Turns on the first port, which QEMU connects to its first `-serial`.
     pub fn first() -> Self {
         DIVIDER.write(Self::FASTEST);
         CONTROL.write(Self::TRANSMIT_ENABLE);

@@ -1,8 +1,8 @@
-//! Waiting for hardware.
+//! Delays for hardware.
 
 use embedded_hal::delay::DelayNs;
 
-/// Does not wait: nothing on this board needs time.
+/// A delay that does not wait: nothing on this board needs time.
 #[derive(Clone, Copy)]
 pub struct Delay;
 

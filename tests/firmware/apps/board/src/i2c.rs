@@ -1,25 +1,25 @@
-//! A bus with one device.
+//! An I²C bus with one device.
 
 use embedded_hal::i2c::{
     Error, ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation, SevenBitAddress,
 };
 
-/// A device as its bus sees it. Registers are set and read as the hardware's documents say.
+/// A device as its bus accesses it, with registers as in the hardware's documentation.
 pub trait Device {
-    /// Its address.
+    /// The device's address.
     const ADDRESS: SevenBitAddress;
 
-    /// The master writes.
+    /// Handles a write by the master.
     fn write(&mut self, bytes: &[u8]);
 
-    /// The master reads.
+    /// Handles a read by the master.
     fn read(&mut self, bytes: &mut [u8]);
 }
 
-/// A bus with no other device than this.
+/// A bus with this device only.
 pub struct Only<D>(pub D);
 
-/// Nobody has that address.
+/// The error for an address at which there is no device.
 #[derive(Clone, Copy, Debug, defmt::Format)]
 pub struct NoAcknowledge;
 
@@ -52,7 +52,7 @@ impl<D: Device> I2c for Only<D> {
     }
 }
 
-/// Registers of a byte behind a pointer that moves on by itself.
+/// One-byte registers behind an auto-incrementing pointer.
 pub(crate) struct Registers<const N: usize> {
     bytes: [u8; N],
     pointer: usize,
@@ -63,7 +63,7 @@ impl<const N: usize> Registers<N> {
         Self { bytes: [0; N], pointer: 0 }
     }
 
-    /// The first byte sets the pointer, the others the registers.
+    /// Handles a write: the first byte sets the pointer, the others the registers.
     pub(crate) fn write(&mut self, bytes: &[u8]) {
         let Some((&pointer, values)) = bytes.split_first() else { return };
         self.pointer = pointer.into();
@@ -80,7 +80,7 @@ impl<const N: usize> Registers<N> {
         }
     }
 
-    /// Which register is read next.
+    /// The register that is read next.
     pub(crate) fn pointer(&self) -> usize {
         self.pointer
     }
@@ -96,7 +96,7 @@ impl<const N: usize> Registers<N> {
     }
 }
 
-/// A measurement in steps, as an analogue-to-digital converter says it: rounded, and held at the ends.
+/// A measurement in steps, as an analogue-to-digital converter gives it: rounded, and saturated.
 pub(crate) fn steps(value: f32, step: f32) -> i16 {
     let steps = value / step;
     (steps + if steps < 0.0 { -0.5 } else { 0.5 }) as i16

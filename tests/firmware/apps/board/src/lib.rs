@@ -1,15 +1,15 @@
-//! What stands for an application's hardware under QEMU, behind the traits of `embedded-hal` 1.0.
+//! The hardware of applications under QEMU, behind the traits of `embedded-hal` 1.0.
 //!
-//! The machine is `lm3s6965evb`, with a Cortex-M0 or a Cortex-M4F in the place of its Cortex-M3. It has what
-//! an application needs and QEMU emulates: serial ports ([`Uart`]), and a serial bus with an SD card
-//! ([`Spi`], [`CardSelect`]). It has no sensors; those are played here, register by register, from a
-//! [`Recording`] ([`Mpu9250`], [`Bno055`], [`Ms4525do`]).
+//! The machine is `lm3s6965evb`, with a Cortex-M0 or a Cortex-M4F in place of its Cortex-M3. It has what an application
+//! needs and QEMU emulates: serial ports ([`Uart`]), and a serial bus with an SD card ([`Spi`], [`CardSelect`]). It has
+//! no sensors; these are simulated here at register level, from a [`Recording`] ([`Mpu9250`], [`Bno055`],
+//! [`Ms4525do`]).
 //!
-//! An application that needs more memory takes the machine `mps2-an386` (the feature of that name), of which there is
-//! a serial port, polled ([`CmsdkUart`]) or by interrupts ([`CmsdkPort`]).
+//! An application that needs more memory uses the machine `mps2-an386` (the feature of that name), of which there is a
+//! serial port, polled ([`CmsdkUart`]) or with interrupts ([`CmsdkPort`]).
 //!
-//! `defmt` writes to the semihosting console. All `unsafe` code of the applications on Arm is in `registers.rs`,
-//! in `system.rs`, and in `mps2-an386`, which names that machine's interrupts.
+//! `defmt` writes to the semihosting console. All `unsafe` code of the applications on Arm is in `registers.rs`, in
+//! `system.rs`, and in `mps2-an386`, which names that machine's interrupts.
 
 #![no_std]
 
@@ -28,7 +28,7 @@ mod system;
 mod tape;
 mod uart;
 
-// Critical sections and the log are found by their symbols.
+// The critical-section implementation and the logger are found by their symbols.
 use cortex_m as _;
 use defmt_semihosting as _;
 

@@ -1,4 +1,4 @@
-//! An `InvenSense` MPU-9250 on I²C, as far as its accelerometer and gyroscope go.
+//! Simulates an `InvenSense` MPU-9250 on I²C: its accelerometer and gyroscope.
 
 use core::f32::consts::PI;
 
@@ -18,20 +18,20 @@ const WHO_AM_I: usize = 0x75;
 const RAW_DATA_READY: u8 = 1;
 const STANDARD_GRAVITY: f32 = 9.806_65;
 
-/// Measures what a recording says: specific force (m/s²) and angular rate (rad/s). Every record of it is a
-/// sample, whatever rate is set.
+/// A chip that measures what a recording holds: specific force (m/s²) and angular rate (rad/s). Every record is one
+/// sample, whatever the configured rate.
 pub struct Mpu9250<'a> {
     recording: &'a Recording<6>,
     registers: Registers<128>,
 }
 
 impl<'a> Mpu9250<'a> {
-    /// As it is after it got power.
+    /// The chip after power-on.
     pub const fn new(recording: &'a Recording<6>) -> Self {
         Self { recording, registers: Registers::new() }
     }
 
-    /// Measures, with the ranges that are set.
+    /// Takes a sample with the configured ranges.
     fn sample(&mut self) {
         // 2 g and 250 °/s, doubled by every step of the two bits.
         let accel = 2.0 / 32768.0 * STANDARD_GRAVITY * self.range(ACCEL_CONFIG);

@@ -8,15 +8,15 @@ use crate::registers::Register;
 
 const BASE: usize = 0x4000_7000;
 const BIT: u32 = 1;
-/// The port's data behind a mask that is part of the address.
+/// The port's data register, whose address contains the mask of bits, and its direction register.
 const DATA: Register = Register::at(BASE + ((BIT as usize) << 2));
 const DIRECTION: Register = Register::at(BASE + 0x400);
 
-/// Low selects the card (and high the machine's display).
+/// The select pin: low selects the card (and high the machine's display).
 pub struct CardSelect(());
 
 impl CardSelect {
-    /// Makes the pin an output; the card is not selected.
+    /// Makes the pin an output, with the card deselected.
     pub fn new() -> Self {
         DATA.write(BIT);
         DIRECTION.write(DIRECTION.read() | BIT);

@@ -1,8 +1,8 @@
-//! What the sensors measure: a recording, and the time in it.
+//! The sensors' measurements: a recording, which also provides the time.
 //!
 //! It is the file `stream.bin` in the emulator's working directory: records of a few words of four bytes,
-//! little-endian. The first is the microseconds since the previous record (`u32`), the others are what was
-//! measured (`f32`).
+//! little-endian. The first is the microseconds since the previous record (`u32`), the others are the measurements
+//! (`f32`).
 
 use core::cell::{Cell, RefCell};
 
@@ -15,7 +15,7 @@ const FILE: &core::ffi::CStr = c"stream.bin";
 const WORD: usize = size_of::<u32>();
 const MOST_WORDS: usize = 8;
 
-/// A recording with `N` numbers a record, and the only clock there is.
+/// A recording with `N` numbers per record, which is also the only clock.
 pub struct Recording<const N: usize> {
     file: RefCell<File>,
     time_us: Cell<u64>,
@@ -36,7 +36,7 @@ impl<const N: usize> Recording<N> {
         }
     }
 
-    /// Lets time pass until the next record. `false` at the end: somebody has switched off.
+    /// Advances to the next record; `false` at the end, when the device is switched off.
     pub fn wait(&self) -> bool {
         let mut bytes = [0; MOST_WORDS * WORD];
         let Some(bytes) = bytes.get_mut(..(N + 1) * WORD) else { fail() };
@@ -55,17 +55,17 @@ impl<const N: usize> Recording<N> {
         true
     }
 
-    /// Microseconds since the start of the recording.
+    /// The time since the start of the recording, µs.
     pub fn time_us(&self) -> u64 {
         self.time_us.get()
     }
 
-    /// What the record of now says.
+    /// The values of the current record.
     pub fn values(&self) -> [f32; N] {
         self.values.get()
     }
 
-    /// Whether there is a record that nobody has asked about: once `true` a record.
+    /// Whether the current record has not been read yet; `true` once per record.
     pub(crate) fn take_unread(&self) -> bool {
         self.unread.take()
     }

@@ -1,13 +1,13 @@
-//! Registers of peripherals.
+//! Memory-mapped registers of peripherals.
 
 use core::ptr;
 
-/// A register of 32 bits that has no effect on memory.
+/// A 32-bit register without side effects on memory.
 #[derive(Clone, Copy)]
 pub(crate) struct Register(usize);
 
 impl Register {
-    /// The register at an address of this board's map of peripherals; anything else does not compile.
+    /// The register at an address in this board's peripheral map; other addresses do not compile.
     pub(crate) const fn at(address: usize) -> Self {
         assert!(address >= 0x4000_0000 && address < 0x4010_0000 && address.is_multiple_of(4));
         Self(address)

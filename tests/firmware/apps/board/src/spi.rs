@@ -1,4 +1,4 @@
-//! The serial bus that the SD card is on: Arm's PL022.
+//! The serial bus with the SD card: Arm's PL022.
 
 use core::convert::Infallible;
 
@@ -18,16 +18,16 @@ const EIGHT_BITS: u32 = 7;
 const ENABLE: u32 = 1 << 1;
 const RECEIVED: u32 = 1 << 2;
 
-/// `READ_OCR`, CMD58, as it begins on the bus.
+/// The first byte of the command `READ_OCR`, CMD58, on the bus.
 const READ_OCR: u8 = 0x40 | 58;
-/// What the data of a block to be written begin with.
+/// The token that precedes the data of a block to be written.
 const DATA_TOKEN: u8 = 0xFE;
-/// That a card is not ready, in the first byte of its answer.
+/// The flag for a card that is not ready, in the first byte of its answer.
 const IDLE: u8 = 1;
 
 /// A bus master.
 pub struct Spi {
-    /// The card has not answered yet.
+    /// Whether the answer to `READ_OCR` is pending.
     reads_ocr: bool,
 }
 
@@ -40,8 +40,8 @@ impl Spi {
         Self { reads_ocr: false }
     }
 
-    /// QEMU 7.2 answers `READ_OCR` as if the card were idle whenever it is asked. A card that has become
-    /// ready does not, and the driver takes it for broken: that one bit is mended here.
+    /// Exchanges a byte, and works around a bug: QEMU 7.2 always answers `READ_OCR` as if the card were idle. A card
+    /// that has become ready does not, and the driver would take it for broken; that one bit is corrected here.
     fn exchange(&mut self, byte: u8) -> u8 {
         DATA.write(byte.into());
         while STATUS.read() & RECEIVED == 0 {}
@@ -80,8 +80,8 @@ impl SpiBus for Spi {
     }
 
     fn transfer(&mut self, read: &mut [u8], write: &[u8]) -> Result<(), Infallible> {
-        // At least a byte's time passes between a card's answer and data (N_WR of the standard). The driver
-        // leaves it out, which many cards forgive and QEMU does not.
+        // The standard requires a pause of at least one byte between a card's answer and data (N_WR). The driver leaves
+        // it out, which many cards tolerate and QEMU does not.
         if write == [DATA_TOKEN] {
             self.exchange(0xFF);
         }

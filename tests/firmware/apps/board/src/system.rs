@@ -1,11 +1,11 @@
-//! How an application ends: with the emulation.
+//! Ends an application by ending the emulation.
 
 use core::panic::PanicInfo;
 
 use semihosting::process;
 use semihosting::sys::arm_compat::{sys_write0, sys_writec};
 
-/// Ends the emulation: all went well.
+/// Ends the emulation successfully.
 pub fn exit() -> ! {
     process::exit(0)
 }
@@ -15,7 +15,7 @@ pub fn fail() -> ! {
     process::exit(1)
 }
 
-/// A panic is a failure that names its place. (Its message is left out: formatting it costs flash.)
+/// Reports the location of a panic as a failure. (The message is left out: formatting it costs flash.)
 #[panic_handler]
 fn panic(info: &PanicInfo) -> ! {
     sys_write0(c"panicked in ");
@@ -26,7 +26,7 @@ fn panic(info: &PanicInfo) -> ! {
     fail()
 }
 
-/// A fault of the processor, by the name that `cortex-m-rt` looks for.
+/// The handler for processor faults, under the name that `cortex-m-rt` looks for.
 #[allow(unsafe_code)] // Overrides the weak default, which would spin until the host's patience ends.
 #[unsafe(export_name = "HardFault")]
 extern "C" fn hard_fault() -> ! {

@@ -1,7 +1,7 @@
-//! What comes in at serial ports: a recording, and the time in it.
+//! The input of serial ports: a recording, which also provides the time.
 //!
-//! It is the file `stream.bin` in the emulator's working directory: records of the microseconds since the
-//! previous record (`u32`), the port (`u16`), a count (`u16`), all little-endian, and so many bytes.
+//! It is the file `stream.bin` in the emulator's working directory: each record has the microseconds since the previous
+//! record (`u32`), the port (`u16`), a count (`u16`), all little-endian, and that many bytes.
 
 use core::cell::{Cell, RefCell};
 use core::convert::Infallible;
@@ -14,17 +14,17 @@ use semihosting::io::Read as _;
 use crate::system::fail;
 
 const FILE: &core::ffi::CStr = c"stream.bin";
-/// Bytes that a port holds until somebody reads them; those that come then are lost, as on any port.
+/// The number of bytes that a port buffers; further ones are lost, as on any port.
 const CAPACITY: usize = 512;
 
-/// A recording of `N` ports, and the only clock there is.
+/// A recording of `N` ports, which is also the only clock.
 pub struct Tape<const N: usize> {
     file: RefCell<File>,
     time_us: Cell<u64>,
     ports: [RefCell<Deque<u8, CAPACITY>>; N],
 }
 
-/// A port that only receives.
+/// A receive-only port.
 pub struct Port<'a>(&'a RefCell<Deque<u8, CAPACITY>>);
 
 impl<const N: usize> Tape<N> {
@@ -40,7 +40,7 @@ impl<const N: usize> Tape<N> {
         self.ports.each_ref().map(Port)
     }
 
-    /// Lets time pass until the next record. `false` at the end: somebody has switched off.
+    /// Advances to the next record; `false` at the end, when the device is switched off.
     pub fn wait(&self) -> bool {
         let mut head = [0; 8];
         if !self.fill(&mut head) {
@@ -61,12 +61,12 @@ impl<const N: usize> Tape<N> {
         true
     }
 
-    /// Microseconds since the start of the recording.
+    /// The time since the start of the recording, µs.
     pub fn time_us(&self) -> u64 {
         self.time_us.get()
     }
 
-    /// `false` at the end.
+    /// Fills `bytes` from the file; `false` at the end.
     fn fill(&self, bytes: &mut [u8]) -> bool {
         let Ok(mut file) = self.file.try_borrow_mut() else { fail() };
         match file.read(bytes) {
@@ -88,7 +88,7 @@ impl ReadReady for Port<'_> {
 }
 
 impl Read for Port<'_> {
-    /// Nothing, where real hardware would wait for the first byte: only who asks [`ReadReady`] gets on.
+    /// Reads what is buffered and may return 0, where real hardware would wait for the first byte: use [`ReadReady`].
     fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Infallible> {
         let Ok(mut port) = self.0.try_borrow_mut() else { return Ok(0) };
         let mut count = 0;

@@ -11,16 +11,16 @@ const DATA: Register = Register::at(BASE);
 const FLAGS: Register = Register::at(BASE + 0x18);
 const CONTROL: Register = Register::at(BASE + 0x30);
 
-/// A serial port. QEMU knows no baud rate.
+/// A serial port. QEMU has no baud rate.
 pub struct Uart(());
 
 impl Uart {
     const TRANSMIT_FULL: u32 = 1 << 5;
     const TRANSMIT_EMPTY: u32 = 1 << 7;
-    /// The port, and its transmitter.
+    /// The enable bits of the port and its transmitter.
     const ENABLE: u32 = 1 | 1 << 8;
 
-    /// Turns on the first port, which QEMU's first `-serial` is connected to.
+    /// Turns on the first port, which QEMU connects to its first `-serial`.
     pub fn first() -> Self {
         CONTROL.write(Self::ENABLE);
         Self(())

@@ -1,4 +1,4 @@
-//! The application on the board that QEMU plays.
+//! The application on the board that QEMU emulates.
 
 #![no_std]
 #![no_main]
@@ -9,7 +9,7 @@ use drone_app::{App, Error, Event};
 use kestirim_particle_filter::Xoshiro128PlusPlus;
 use rand_core::SeedableRng;
 
-/// Satellite receiver and radio.
+/// The number of ports: satellite receiver and radio.
 const PORTS: usize = 2;
 
 #[entry]

@@ -1,5 +1,5 @@
-//! The foot's node on embassy: one task awaits bytes and tracks, the other sends what there is to say, and between them and
-//! the serial port are its interrupts. Neither task waits in a loop: with nothing to do the processor sleeps.
+//! The foot's node on embassy: one task awaits bytes and tracks, the other sends the answers, and the interrupts of the
+//! serial port connect both to it. Neither task polls: when idle, the processor sleeps.
 
 #![no_std]
 #![no_main]
@@ -18,7 +18,7 @@ use serial::{Receiver, Sender};
 /// A frame, and whether it is the last.
 type Outgoing = (Vec<u8, FRAME>, bool);
 
-/// What is to be sent: a line that stalls for so many frames holds the tracker up, and not before.
+/// The frames to be sent: the tracker only waits once the line has stalled for this many frames.
 static OUTGOING: Channel<CriticalSectionRawMutex, Outgoing, 4> = Channel::new();
 
 #[embassy_executor::main]
@@ -29,7 +29,7 @@ async fn main(spawner: Spawner) {
             spawner.spawn(track);
             spawner.spawn(send);
         }
-        // Cannot be: each is spawned once.
+        // Cannot happen: each is spawned once.
         _ => board::fail(),
     }
 }

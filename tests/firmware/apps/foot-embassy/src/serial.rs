@@ -1,4 +1,4 @@
-//! The first serial port, behind the traits of `embedded-io-async`: interrupts move its bytes.
+//! The first serial port, behind the traits of `embedded-io-async`: interrupts transfer its bytes.
 
 use core::convert::Infallible;
 
@@ -10,18 +10,18 @@ use embassy_sync::signal::Signal;
 use embedded_io_async::{ErrorType, Read, Write};
 use mps2_an386::interrupt;
 
-/// What has arrived and is not read yet.
+/// The bytes received but not read yet.
 static ARRIVED: Pipe<CriticalSectionRawMutex, 64> = Pipe::new();
-/// A byte has been sent.
+/// Signals that a byte has been sent.
 static SENT: Signal<CriticalSectionRawMutex, ()> = Signal::new();
 
-/// The half that receives.
+/// The receiving half of the port.
 pub(crate) struct Receiver(CmsdkPort);
 
-/// The half that sends.
+/// The sending half of the port.
 pub(crate) struct Sender(CmsdkPort);
 
-/// Both halves of the first port. It is called once: there is one port.
+/// Both halves of the first port. It must be called once, as there is one port.
 pub(crate) fn first() -> (Receiver, Sender) {
     let port = CmsdkPort::first();
     mps2_an386::unmask(interrupt::UARTRX0);
@@ -36,7 +36,7 @@ impl ErrorType for Receiver {
 impl Read for Receiver {
     async fn read(&mut self, bytes: &mut [u8]) -> Result<usize, Infallible> {
         let count = ARRIVED.read(bytes).await;
-        // There is room again for the byte that the handler may have left in the port.
+        // There is room again for a byte that the handler may have left in the port.
         NVIC::pend(interrupt::UARTRX0);
         Ok(count)
     }
@@ -70,7 +70,7 @@ fn UARTRX0() {
     if ARRIVED.is_full() {
         port.postpone();
     } else if let Some(byte) = port.receive() {
-        // There is room: nobody else writes.
+        // There is room: this is the only writer.
         let _ = ARRIVED.try_write(&[byte]);
     }
 }

@@ -1,6 +1,6 @@
-//! The foot's node on RTIC: the interrupt of the serial port hands bytes to a task of lower priority, which tracks and
-//! answers. A byte that arrives while it tracks interrupts it; with nothing to do the processor sleeps. (Sending polls the
-//! port: see `foot-embassy` for interrupts there, too.)
+//! The foot's node on RTIC: the interrupt of the serial port passes bytes to a task of lower priority, which tracks and
+//! answers. A byte that arrives meanwhile interrupts it; when idle, the processor sleeps. (Sending polls the port: see
+//! `foot-embassy` for interrupts there, too.)
 
 #![no_std]
 #![no_main]
@@ -15,7 +15,7 @@ mod app {
     use rtic_sync::channel::{Receiver, Sender};
     use rtic_sync::make_channel;
 
-    /// Bytes that may wait for the tracker.
+    /// The number of bytes that may wait for the tracker.
     const ROOM: usize = 64;
 
     #[shared]
@@ -31,7 +31,7 @@ mod app {
         let (arrived, bytes) = make_channel!(u8, ROOM);
         let port = CmsdkPort::first();
         if track::spawn(bytes, port).is_err() {
-            // Cannot be: it is spawned once.
+            // Cannot happen: it is spawned once.
             board::fail();
         }
         (Shared {}, Local { arrived })
@@ -50,7 +50,7 @@ mod app {
         if arrived.is_full() {
             port.postpone();
         } else if let Some(byte) = port.receive() {
-            // There is room: nobody else sends.
+            // There is room: this is the only sender.
             let _ = arrived.try_send(byte);
         }
     }
@@ -59,7 +59,7 @@ mod app {
     async fn track(_: track::Context, mut bytes: Receiver<'static, u8, ROOM>, port: CmsdkPort) {
         let (mut node, mut buffer) = (Node::new(SensorClass::Consumer), [0; FRAME]);
         while let Ok(byte) = bytes.recv().await {
-            // There is room again for the byte that the handler may have left in the port.
+            // There is room again for a byte that the handler may have left in the port.
             NVIC::pend(Interrupt::UARTRX0);
             let Some(answer) = node.take(byte, &mut buffer) else { continue };
             for &byte in answer.frame {

@@ -1,16 +1,16 @@
-//! Interrupts of QEMU's machine `mps2-an386` (Arm's application note AN386), as far as applications here have them: what
-//! svd2rust would make of the chip's description, if there were one.
+//! Interrupts of QEMU's machine `mps2-an386` (Arm's application note AN386), as far as the applications need them: what
+//! svd2rust would generate from the chip's description, if there were one.
 
 #![no_std]
 
 use cortex_m::interrupt::InterruptNumber;
 use cortex_m::peripheral::NVIC;
 
-// Under the name by which `#[interrupt]` and RTIC look for both.
+// Under the names by which `#[interrupt]` and RTIC look for both.
 pub use self::Interrupt as interrupt;
 pub use cortex_m_rt::interrupt;
 
-/// Bits of an interrupt's priority.
+/// The number of bits of an interrupt's priority.
 pub const NVIC_PRIO_BITS: u8 = 3;
 
 /// An interrupt, by the name of its handler.
@@ -21,16 +21,16 @@ pub enum Interrupt {
     UARTRX0 = 0,
     /// The first serial port can send again.
     UARTTX0 = 1,
-    /// A pin; free for a program of its own.
+    /// A pin; free for other uses of a program.
     GPIO0 = 6,
 }
 
-/// Lets an interrupt through.
+/// Unmasks an interrupt.
 ///
-/// A handler shares with the rest of the program what is made for that, as everything in safe code is.
+/// A handler only shares with the rest of the program what is made for sharing, like all safe code.
 pub fn unmask(interrupt: Interrupt) {
     #[allow(unsafe_code)]
-    // There are no critical sections by masks in these programs, which this could break.
+    // These programs have no mask-based critical sections, which this could break.
     unsafe {
         NVIC::unmask(interrupt);
     }
@@ -43,7 +43,7 @@ unsafe impl InterruptNumber for Interrupt {
     }
 }
 
-/// An entry of the table.
+/// An entry of the vector table.
 pub union Vector {
     handler: unsafe extern "C" fn(),
     reserved: usize,
@@ -56,7 +56,7 @@ unsafe extern "C" {
     fn GPIO0();
 }
 
-/// The handlers, where `cortex-m-rt` has the linker look for them.
+/// The handlers, where `cortex-m-rt` makes the linker look for them.
 #[allow(unsafe_code)] // A table of addresses that the processor reads.
 #[unsafe(link_section = ".vector_table.interrupts")]
 #[unsafe(no_mangle)]

@@ -1,4 +1,4 @@
-//! The application on the board that QEMU plays.
+//! The application on the board that QEMU emulates.
 
 #![no_std]
 #![no_main]
@@ -11,7 +11,7 @@ use embedded_hal_bus::spi::ExclusiveDevice;
 use embedded_sdmmc::{Mode, SdCard, TimeSource, Timestamp, VolumeIdx, VolumeManager};
 use pedestrian_app::{App, Error, SensorError};
 
-/// What the processor computes with: fixed point if it has no floating-point unit.
+/// The number type: fixed point if the processor has no floating-point unit.
 #[cfg(target_abi = "eabihf")]
 type Number = f32;
 #[cfg(not(target_abi = "eabihf"))]
@@ -47,7 +47,7 @@ fn walk(recording: &Recording<6>) -> Result<(), Failure> {
         match app.poll(recording.time_us()) {
             Ok(Some(event)) => defmt::info!("{}", event),
             Ok(None) => {}
-            // A reading is missing: the tracker can do without it.
+            // A reading is missing, which the tracker tolerates.
             Err(error) => defmt::warn!("{}", error),
         }
     }
@@ -55,7 +55,7 @@ fn walk(recording: &Recording<6>) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The board has no clock that knows the date.
+/// A time source without a date: the board has no calendar clock.
 struct NoCalendar;
 
 impl TimeSource for NoCalendar {

@@ -1,6 +1,6 @@
-//! The robot on an ESP32-C3: makes the board and runs the loop.
+//! The robot on an ESP32-C3: sets up the board and runs the loop.
 //!
-//! Built and linked by the tests, and never run: there is no such board here.
+//! The tests build and link it but never run it: there is no such board here.
 //!
 //! | pin | to |
 //! |---|---|
@@ -25,13 +25,13 @@ use robot_app::{Imu, Radio, Robot, TAG};
 
 esp_bootloader_esp_idf::esp_app_desc!();
 
-/// An anchor's turn: each is asked ten times a second.
+/// The duration of an anchor's turn: each is polled ten times a second.
 const TURN: Duration = Duration::from_millis(25);
 
-/// Why the program starts again.
+/// The reason why the program restarts.
 #[derive(defmt::Format)]
 enum Failure {
-    /// A bus or the serial line does not take its settings.
+    /// A bus or the serial line does not accept its settings.
     Settings,
     Radio(robot_app::RadioError),
     Imu(robot_app::ImuError),
@@ -84,7 +84,7 @@ fn run() -> Result<core::convert::Infallible, Failure> {
         if let Err(error) = step.acceleration {
             warn!("{}", error);
         }
-        // A step that took longer than its turn puts all others off.
+        // A step that took longer than its turn delays all later ones.
         turn = (turn + TURN).max(Instant::now());
         while Instant::now() < turn {}
     }

@@ -18,7 +18,7 @@ use semihosting::process;
 use stream::Stream;
 use uart::Uart;
 
-/// Why the program ends as a failure.
+/// The reason why the program ends with a failure.
 #[derive(defmt::Format)]
 enum Failure {
     NoStream,
@@ -70,7 +70,7 @@ fn panic(info: &PanicInfo<'_>) -> ! {
     process::exit(2)
 }
 
-/// A fault of the processor, by the name that `riscv-rt` looks for.
+/// The handler for processor faults, under the name that `riscv-rt` looks for.
 #[allow(unsafe_code)] // Overrides the weak default, which would spin until the host's patience ends.
 #[unsafe(export_name = "ExceptionHandler")]
 extern "C" fn exception() -> ! {

@@ -1,8 +1,8 @@
-//! What the devices measure: the file `stream.bin` in the emulator's working directory.
+//! The devices' measurements: the file `stream.bin` in the emulator's working directory.
 //!
-//! A record is five words of four bytes, little-endian: microseconds since the previous record (`u32`), the
-//! range to the anchor whose turn it is (`f32`, m; not a number if it is silent), and the acceleration in the
-//! body's axes (three `i32`, cm/s²).
+//! A record is five words of four bytes, little-endian: microseconds since the previous record (`u32`), the range to
+//! the anchor whose turn it is (`f32`, m; NaN if it is silent), and the acceleration in the body axes (three `i32`,
+//! cm/s²).
 
 use robot_world::Sample;
 use semihosting::fs::File;

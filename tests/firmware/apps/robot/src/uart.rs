@@ -9,7 +9,7 @@ const BASE: usize = 0x1000_0000;
 const LINE_STATUS: usize = BASE + 5;
 const HOLDING_EMPTY: u8 = 1 << 5;
 
-/// The port. QEMU knows no baud rate.
+/// The serial port. QEMU has no baud rate.
 pub(crate) struct Uart;
 
 impl ErrorType for Uart {

@@ -1,4 +1,4 @@
-//! The application on the board that QEMU plays.
+//! The application on the board that QEMU emulates.
 
 #![no_std]
 #![no_main]
@@ -9,7 +9,7 @@ use board::{Bno055, Delay, Ms4525do, NoAcknowledge, Only, Recording, Uart};
 use cortex_m_rt::entry;
 use uav_app::{App, Error, Sensors};
 
-/// What the processor computes with: fixed point if it has no floating-point unit.
+/// The number type: fixed point if the processor has no floating-point unit.
 #[cfg(target_abi = "eabihf")]
 type Number = f32;
 #[cfg(not(target_abi = "eabihf"))]
@@ -33,12 +33,12 @@ fn fly(recording: &Recording<5>) -> Result<(), Error<NoAcknowledge, Infallible>>
     let mut app = App::<Number, _, _, _, _>::new(sensors, Uart::first())?;
     defmt::info!("observing from {}", app.estimate());
     while recording.wait() {
-        // What the autopilot has just told the actuators.
+        // The latest commands of the autopilot to the actuators.
         let [elevator, throttle, ..] = recording.values();
         match app.step(recording.time_us(), [elevator, throttle]) {
             Ok(Some(event)) => defmt::info!("{}", event),
             Ok(None) => {}
-            // The observer has moved on without.
+            // The observer has advanced without the sensors.
             Err(error) => defmt::warn!("{}", error),
         }
     }

@@ -1,4 +1,4 @@
-//! Computes with numbers at the edges and at random, and tells what the bits of the results amount to.
+//! Computes with numbers at the limits and at random, and prints a digest of the bits of the results.
 
 #![no_std]
 #![no_main]
@@ -12,7 +12,7 @@ mod pairs;
 
 const OPERATIONS: [Operation; 7] = operations(|a, _| kestirim_arithmetic::sqrt(a));
 
-/// Which operation, and how many pairs at random of which seed.
+/// An operation, and the number and the seed of random pairs.
 struct Task {
     operation: u32,
     seed: u32,

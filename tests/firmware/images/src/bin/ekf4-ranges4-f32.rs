@@ -1,4 +1,4 @@
-//! The common scenario of the peers, in single precision.
+//! The common scenario with the extended Kalman filter, in single precision.
 
 #![no_std]
 #![no_main]

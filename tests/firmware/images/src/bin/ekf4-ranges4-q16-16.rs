@@ -1,4 +1,4 @@
-//! The common scenario of the peers, in fixed point with 16 fractional bits.
+//! The common scenario with the extended Kalman filter, in fixed point with 16 fractional bits.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! The harness alone: what the flash of a replaying image is counted from.
+//! The harness alone: the reference for the flash size of a replaying image.
 
 #![no_std]
 #![no_main]
@@ -7,7 +7,7 @@ use images::replay::{Tracker, run};
 use images::stream::Sample;
 use support::{Class, image};
 
-/// Believes what it was told last, so that all of the replay is linked.
+/// A tracker that returns its last input, so that all of the replay is linked.
 #[derive(Default)]
 struct Nothing([f32; 3]);
 

@@ -1,4 +1,4 @@
-//! What the elementary functions cost, in Q12.20 and single precision, over arguments of everyday size.
+//! Measures the elementary functions, in Q12.20 and single precision, over arguments of ordinary size.
 
 #![no_std]
 #![no_main]
@@ -8,7 +8,7 @@ use core::hint::black_box;
 use kestirim_scalar::{Q12_20, Scalar};
 use support::{Class, Meter, image};
 
-/// Arguments from −6.2 to 6.6, and for functions of positive numbers their magnitudes.
+/// Arguments from −6.2 to 6.6; functions of positive numbers take their magnitudes.
 fn arguments<T: Scalar>() -> impl Iterator<Item = T> {
     (0..64).map(|k| T::from_micro(k * 203_125 - 6_200_000))
 }

@@ -1,5 +1,5 @@
-//! The simplest tracker there is: integrates specific force twice, in single precision. The host
-//! does the same sums, which proves the way from a stored stream to a reported position.
+//! The simplest tracker: integrates specific force twice, in single precision. The host computes the same sums, which
+//! verifies the path from a stored stream to a reported position.
 
 #![no_std]
 #![no_main]

@@ -1,7 +1,7 @@
-//! The aeroplane's observers designed by the target itself: its plant at 100 Hz, the gain that places four poles,
-//! and the gain at which a Kalman filter settles.
+//! Designs the aeroplane's observers on the target itself: its plant at 100 Hz, the gain that places four poles, and
+//! the steady-state Kalman gain.
 //!
-//! Tells the host every column of A, B and the gains as the bits of its numbers, and what each design cost.
+//! Prints every column of A, B and the gains as the bits of its numbers, and the cost of each design.
 
 #![no_std]
 #![no_main]
@@ -12,7 +12,7 @@ use kestirim_scalar::Columns;
 use nalgebra::SMatrix;
 use support::{Class, Meter, fail, image, line};
 
-/// Deeper than any design reaches into the stack, in bytes.
+/// The measured depth of the stack, bytes, which exceeds that of any design.
 const REACH: usize = 64 * 1024;
 
 fn run() {

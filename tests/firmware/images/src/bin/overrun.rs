@@ -1,4 +1,4 @@
-//! A step longer than the counter of any Cortex-M can count: the image must fail, not tell a wrong number.
+//! A step longer than the counter of any Cortex-M can count: the image must fail instead of reporting a wrong number.
 
 #![no_std]
 #![no_main]

@@ -1,11 +1,11 @@
-//! Precise point positioning by the target itself: a station is found from ten satellites, by the default filter without
-//! gradients of the troposphere and with them, and by the plain one.
+//! Precise point positioning on the target itself: a station is located with ten satellites, by the default filter
+//! without and with tropospheric gradients, and by the plain one.
 //!
-//! Tells the host
+//! Prints
 //!
 //! - `name`, `scalar` and `object_bytes` (size of the filter);
-//! - for each filter and epoch `FILTER.solution`, the bits of x y z, the receiver's clock and the wet delay, and
-//!   `FILTER.treated`, how many codes and how many phases had less than full weight;
+//! - for each filter and epoch `FILTER.solution`, the bits of x, y, z, the receiver's clock and the wet delay, and
+//!   `FILTER.treated`, the numbers of codes and of phases that had less than full weight;
 //! - the meter's report of the first epoch, of those with good observations, and of that with outliers.
 
 #![no_std]
@@ -19,7 +19,7 @@ use kestirim_robust_kalman::Reweighting;
 use kestirim_scalar::Components;
 use support::{Class, Meter, fail, image, line, line_of_text};
 
-/// Deeper than any epoch reaches into the stack, in bytes.
+/// The measured depth of the stack, bytes, which exceeds that of any epoch.
 const REACH: usize = 96 * 1024;
 
 fn run() {

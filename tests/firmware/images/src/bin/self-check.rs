@@ -1,4 +1,4 @@
-//! Checks the meter with code of known cost; the host knows what must come out.
+//! Checks the meter with code of known cost; the host knows the expected results.
 
 #![no_std]
 #![no_main]
@@ -7,7 +7,7 @@ use core::hint::black_box;
 
 use support::{Class, Meter, image, known};
 
-/// Turns of the spins. The long one is near what the counter of every target can hold.
+/// The iterations of the spins. The long one is close to what the counter of every target can hold.
 const SHORT: u32 = 50_000;
 const LONG: u32 = 1_250_000;
 
@@ -26,7 +26,7 @@ fn spin(name: &str, turns: u32) {
     measure(name, || known::spin(turns));
 }
 
-/// Measures ten times: the host sees that every time gave the same.
+/// Measures ten times: the host checks that all results agree.
 #[inline(always)] // Otherwise the call of `code` would be measured, too.
 fn measure(name: &str, mut code: impl FnMut()) {
     let mut meter = Meter::new();

@@ -19,7 +19,7 @@ fn learning<T: Scalar>(least: f64, most: f64) -> Learning<T> {
     }
 }
 
-/// The adaptive filter in its safe form: both adaptations.
+/// The adaptive filter in its safe form, with both adaptations.
 pub struct Aekf<T: Scalar> {
     scenario: Scenario<T>,
     filter: AdaptiveKalman<T, 4, 4>,

@@ -1,8 +1,8 @@
-//! RISC-V: the register `minstret`, which under `-icount` holds the virtual time in ns.
+//! The counter of RISC-V: the register `minstret`, which under `-icount` holds the virtual time in ns.
 
 use riscv::register::minstret;
 
-/// `minstret` grows by 2^`SHIFT` an instruction.
+/// `minstret` grows by 2^`SHIFT` per instruction.
 const SHIFT: u32 = 8;
 
 /// The running instruction counter.
@@ -11,12 +11,12 @@ pub(crate) struct Counter {
 }
 
 impl Counter {
-    /// The counter runs from reset on.
+    /// A counter; the register runs from reset on.
     pub(crate) fn new() -> Self {
         Self { start: 0 }
     }
 
-    /// Counts from here on.
+    /// Starts counting.
     #[inline(always)]
     pub(crate) fn start(&mut self) {
         self.start = minstret::read64();

@@ -1,10 +1,10 @@
-//! Any Cortex-M: the SysTick, which counts 24 bits down.
+//! The counter of any Cortex-M: the SysTick, a 24-bit down-counter.
 
 use cortex_m::peripheral::{SYST, syst::SystClkSource};
 
 const FULL: u32 = 0x00FF_FFFF;
 
-/// Instructions = ticks · `FACTOR` / 2^`SHIFT`: 62.5 ns a tick, 256 ns an instruction.
+/// Instructions = ticks · `FACTOR` / 2^`SHIFT`: 62.5 ns per tick, 256 ns per instruction.
 const FACTOR: u32 = 125;
 const SHIFT: u32 = 9;
 
@@ -26,10 +26,10 @@ impl Counter {
         Self { systick, start: 0 }
     }
 
-    /// Counts from here on.
+    /// Starts counting.
     #[inline(always)]
     pub(crate) fn start(&mut self) {
-        // From zero the counter goes on to its full value: the whole range is before us.
+        // From zero the counter wraps to its full value, so the whole range is available.
         self.systick.clear_current();
         self.start = SYST::get_current();
     }

@@ -1,5 +1,5 @@
-//! The MPS2's first timer, which counts 32 bits down. (The SysTick has 24, too few for what takes seconds; the
-//! cycle counter of a Cortex-M4 would be nicer, QEMU does not have it.)
+//! The counter of the MPS2: its first timer, a 32-bit down-counter. (The 24 bits of the SysTick are too few for what
+//! takes seconds; QEMU does not emulate the cycle counter of a Cortex-M4, which would be better.)
 
 use core::ptr;
 
@@ -9,11 +9,11 @@ const VALUE: usize = CONTROL + 0x4;
 const RELOAD: usize = CONTROL + 0x8;
 const INTERRUPT: usize = CONTROL + 0xC;
 
-/// Counts, and notes in the interrupt register that zero was reached. (The processor is not interrupted: its
-/// controller leaves the timer's line masked.)
+/// Starts the timer, and lets its interrupt register record that zero was reached. (The processor is not interrupted:
+/// its controller keeps the timer's line masked.)
 const RUN: u32 = 1 | 1 << 3;
 
-/// Instructions = ticks · `FACTOR` / 2^`SHIFT`: 40 ns a tick, 256 ns an instruction.
+/// Instructions = ticks · `FACTOR` / 2^`SHIFT`: 40 ns per tick, 256 ns per instruction.
 const FACTOR: u64 = 5;
 const SHIFT: u32 = 5;
 
@@ -31,10 +31,10 @@ impl Counter {
         Self { start: 0 }
     }
 
-    /// Counts from here on.
+    /// Starts counting.
     #[inline(always)]
     pub(crate) fn start(&mut self) {
-        // The whole range is before us.
+        // The whole range is available.
         write(VALUE, u32::MAX);
         write(INTERRUPT, 1);
         self.start = read(VALUE);

@@ -1,4 +1,4 @@
-//! What the other programs must not be: it can panic, and computes in double precision.
+//! The counterexample to the other programs: it can panic, and computes in double precision.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-adaptive-kalman`, linked.
+//! Links everything of `kestirim-adaptive-kalman`.
 
 #![no_std]
 #![no_main]

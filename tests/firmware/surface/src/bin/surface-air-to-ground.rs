@@ -1,4 +1,4 @@
-//! Everything of `kestirim-air-to-ground`, linked.
+//! Links everything of `kestirim-air-to-ground`.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-arithmetic`, linked.
+//! Links everything of `kestirim-arithmetic`.
 
 #![no_std]
 #![no_main]

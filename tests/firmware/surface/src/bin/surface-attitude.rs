@@ -1,4 +1,4 @@
-//! Everything of `kestirim-attitude`, linked.
+//! Links everything of `kestirim-attitude`.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-gnss-ppp`, linked.
+//! Links everything of `kestirim-gnss-ppp`.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-health`, linked.
+//! Links everything of `kestirim-health`.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-imu-calibration`, linked.
+//! Links everything of `kestirim-imu-calibration`.
 
 #![no_std]
 #![no_main]

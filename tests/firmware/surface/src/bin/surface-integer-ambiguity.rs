@@ -1,4 +1,4 @@
-//! Everything of `kestirim-integer-ambiguity`, linked.
+//! Links everything of `kestirim-integer-ambiguity`.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-kalman`, linked.
+//! Links everything of `kestirim-kalman`.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! The double precision of `kestirim-luenberger`, linked.
+//! Links the double precision of `kestirim-luenberger`.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-luenberger`, linked.
+//! Links everything of `kestirim-luenberger`.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-observer-design`, linked.
+//! Links everything of `kestirim-observer-design`.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-particle-filter`, linked.
+//! Links everything of `kestirim-particle-filter`.
 
 #![no_std]
 #![no_main]

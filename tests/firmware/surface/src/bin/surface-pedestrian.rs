@@ -1,4 +1,4 @@
-//! Everything of `kestirim-pedestrian`, linked.
+//! Links everything of `kestirim-pedestrian`.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-ppp-filter`, linked.
+//! Links everything of `kestirim-ppp-filter`.
 
 #![no_std]
 #![no_main]

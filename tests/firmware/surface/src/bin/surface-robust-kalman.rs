@@ -1,4 +1,4 @@
-//! Everything of `kestirim-robust-kalman`, linked.
+//! Links everything of `kestirim-robust-kalman`.
 
 #![no_std]
 #![no_main]

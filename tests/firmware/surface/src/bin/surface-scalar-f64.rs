@@ -1,4 +1,4 @@
-//! The double precision of `kestirim-scalar`, linked.
+//! Links the double precision of `kestirim-scalar`.
 
 #![no_std]
 #![no_main]

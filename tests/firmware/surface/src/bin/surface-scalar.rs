@@ -1,4 +1,4 @@
-//! Everything of `kestirim-scalar`, linked.
+//! Links everything of `kestirim-scalar`.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-snapshot`, linked.
+//! Links everything of `kestirim-snapshot`.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-telemetry`, linked.
+//! Links everything of `kestirim-telemetry`.
 
 #![no_std]
 #![no_main]

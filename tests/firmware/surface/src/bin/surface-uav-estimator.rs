@@ -1,4 +1,4 @@
-//! Everything of `kestirim-uav-estimator`, linked.
+//! Links everything of `kestirim-uav-estimator`.
 
 #![no_std]
 #![no_main]

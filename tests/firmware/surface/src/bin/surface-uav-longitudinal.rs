@@ -1,4 +1,4 @@
-//! Everything of `kestirim-uav-longitudinal`, linked.
+//! Links everything of `kestirim-uav-longitudinal`.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-user-locator`, linked.
+//! Links everything of `kestirim-user-locator`.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! Everything of `kestirim-uwb-ranging`, linked.
+//! Links everything of `kestirim-uwb-ranging`.
 
 #![no_std]
 #![no_main]

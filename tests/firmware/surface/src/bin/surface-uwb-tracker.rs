@@ -1,4 +1,4 @@
-//! Everything of `kestirim-uwb-tracker`, linked.
+//! Links everything of `kestirim-uwb-tracker`.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! On the host: everyday values, and wild ones among them.
+//! Values on the host: ordinary ones, with extreme ones among them.
 
 use std::cell::Cell;
 use std::fmt::Debug;
@@ -9,17 +9,17 @@ use super::Whole;
 
 thread_local! {
     static STATE: Cell<u64> = const { Cell::new(1) };
-    /// One value of so many is wild.
+    /// One value in this many is extreme.
     static TAME: Cell<u64> = const { Cell::new(1) };
 }
 
-/// Draws from here on, with one wild value among `tame`.
+/// Starts drawing from a seed, with one extreme value in `tame`.
 pub fn start_from(seed: u64, tame: u64) {
     STATE.set(seed);
     TAME.set(tame.max(1));
 }
 
-/// Vigna's splitmix64.
+/// Random bits by Vigna's splitmix64.
 fn bits() -> u64 {
     let state = STATE.get().wrapping_add(0x9E37_79B9_7F4A_7C15);
     STATE.set(state);
@@ -36,7 +36,7 @@ fn is_wild() -> bool {
     below(TAME.get()) == 0
 }
 
-/// Any number.
+/// An arbitrary number.
 pub fn number<T: Scalar>() -> T {
     let fraction = f64::from(bits() as u32) / f64::from(u32::MAX);
     if !is_wild() {
@@ -64,7 +64,7 @@ pub fn number<T: Scalar>() -> T {
     }
 }
 
-/// Any whole number.
+/// An arbitrary integer.
 pub fn whole<I: Whole>() -> I {
     let any = bits();
     I::of_bits(match if is_wild() { below(5) } else { 4 } {
@@ -76,33 +76,33 @@ pub fn whole<I: Whole>() -> I {
     })
 }
 
-/// How often a step is taken.
+/// The number of times that a step is taken.
 pub fn rounds() -> u32 {
     below(30) as u32
 }
 
-/// Any of them.
+/// An arbitrary one of the choices.
 pub fn one_of<T: Copy, const N: usize>(choices: [T; N]) -> T {
     choices[below(N as u64) as usize]
 }
 
-/// It, or none.
+/// The value, or `None`.
 pub fn maybe<T>(value: T) -> Option<T> {
     (below(4) > 0).then_some(value)
 }
 
-/// The beginning of a slice.
+/// A prefix of arbitrary length of a slice.
 pub fn slice<T>(values: &[T]) -> &[T] {
     &values[..below(values.len() as u64 + 1) as usize]
 }
 
-/// The beginning of a slice.
+/// A prefix of arbitrary length of a slice.
 pub fn slice_mut<T>(values: &mut [T]) -> &mut [T] {
     let length = below(values.len() as u64 + 1) as usize;
     &mut values[..length]
 }
 
-/// A step that may be refused; then the state is as it was.
+/// Takes a step that may be refused, in which case the state must be unchanged.
 ///
 /// # Panics
 /// It is not.

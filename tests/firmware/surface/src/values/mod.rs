@@ -1,4 +1,4 @@
-//! Arguments: on a target such that the optimiser knows nothing of them, on the host drawn at random.
+//! Arguments for the calls: unknown to the optimiser on a target, drawn at random on the host.
 
 #[cfg(not(target_os = "none"))]
 mod drawn;
@@ -16,13 +16,13 @@ pub use drawn::{maybe, number, one_of, rounds, slice, slice_mut, start_from, try
 #[cfg(target_os = "none")]
 pub use opaque::{maybe, number, one_of, rounds, slice, slice_mut, try_on, whole};
 
-/// A value, of which the optimiser forgets whatever it knew.
+/// The value, hidden from the optimiser.
 #[inline(always)]
 pub fn any<T>(value: T) -> T {
     black_box(value)
 }
 
-/// Uses a result, all of it.
+/// Uses a whole result, so that none of it is optimised away.
 #[inline(always)]
 pub fn keep<T>(result: T) {
     black_box(result);
@@ -36,33 +36,33 @@ pub fn call_each<const N: usize>(functions: [fn(); N]) {
     }
 }
 
-/// Any numbers.
+/// Arbitrary numbers.
 #[inline(always)]
 pub fn numbers<T: Scalar, const N: usize>() -> [T; N] {
     black_box([(); N].map(|()| number()))
 }
 
-/// Any matrix or vector.
+/// An arbitrary matrix or vector.
 #[inline(always)]
 pub fn matrix<T: Scalar, const R: usize, const C: usize>() -> SMatrix<T, R, C> {
     black_box(SMatrix::from([(); C].map(|()| numbers())))
 }
 
-/// Any number, or none.
+/// An arbitrary number, or `None`.
 #[inline(always)]
 pub fn option<T: Scalar>() -> Option<T> {
     maybe(number())
 }
 
-/// Either.
+/// An arbitrary truth value.
 #[inline(always)]
 pub fn yes_or_no() -> bool {
     one_of([true, false])
 }
 
-/// A whole number's type.
+/// An integer type.
 pub trait Whole: Copy {
-    /// From the low bits.
+    /// The integer with these low bits.
     fn of_bits(bits: u64) -> Self;
 }
 
@@ -78,7 +78,7 @@ macro_rules! impl_whole {
 }
 impl_whole!(u8, u16, u32, u64, usize, i8, i32);
 
-/// Any random numbers.
+/// A generator of arbitrary random numbers.
 pub struct AnyRng;
 
 impl TryRng for AnyRng {

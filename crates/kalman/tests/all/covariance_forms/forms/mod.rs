@@ -1,4 +1,5 @@
-//! The covariance in the forms that the textbooks offer, as plainly as they print them, and ours.
+//! The covariance in this crate's form and in those of the textbooks, as plainly as they print
+//! them.
 
 use kestirim_kalman::{Covariance, Gaussian, SparseRow};
 use kestirim_scalar::Scalar;
@@ -11,7 +12,7 @@ pub(crate) trait Form<T: Scalar> {
     /// Position `axis` (0, 1) moves by `a` of velocity `axis + 2`.
     fn shear(&mut self, axis: usize, a: T);
     fn add_variance(&mut self, state: usize, q: T);
-    /// Whether the update was possible.
+    /// Takes in a row h with variance r; returns whether that was possible.
     fn update(&mut self, h: [T; 4], r: T) -> bool;
     fn matrix(&self) -> Matrix4<f64>;
 }
@@ -20,7 +21,7 @@ fn doubles<T: Scalar>(m: &SMatrix<T, 4, 4>) -> Matrix4<f64> {
     m.map(T::to_f64)
 }
 
-/// This crate.
+/// The form of this crate.
 pub(crate) struct Ours<T: Scalar>(Gaussian<T, 4>);
 
 impl<T: Scalar> Form<T> for Ours<T> {
@@ -48,10 +49,10 @@ impl<T: Scalar> Form<T> for Ours<T> {
     }
 }
 
-/// P ← P − k g ᵀ on a symmetric P.
+/// The conventional form: P ← P − k gᵀ on a symmetric P.
 pub(crate) struct Conventional<T: Scalar>(SMatrix<T, 4, 4>);
 
-/// P ← (1 − k h) P (1 − k h)ᵀ + k R kᵀ on a symmetric P.
+/// Joseph's form: P ← (1 − k h) P (1 − k h)ᵀ + k R kᵀ on a symmetric P.
 pub(crate) struct Joseph<T: Scalar>(SMatrix<T, 4, 4>);
 
 fn symmetric_shear<T: Scalar>(p: &mut SMatrix<T, 4, 4>, axis: usize, a: T) {
@@ -69,7 +70,7 @@ fn mirror<T: Scalar>(p: &mut SMatrix<T, 4, 4>) {
     }
 }
 
-/// (g, k) of a row, unless S is not positive.
+/// (P hᵀ, k) of a row, or `None` if S is not positive.
 fn gain<T: Scalar>(p: &SMatrix<T, 4, 4>, h: [T; 4], r: T) -> Option<[[T; 4]; 2]> {
     let g: [T; 4] = std::array::from_fn(|i| T::dot(&h, &std::array::from_fn(|j| p[(i, j)])));
     let s = T::dot(&h, &g) + r;
@@ -123,7 +124,7 @@ impl<T: Scalar> Form<T> for Joseph<T> {
     }
 }
 
-/// P = U D Uᵀ: Bierman's update, Agee and Turner's rank-one sum (Bierman 1977).
+/// The UD form P = U D Uᵀ: Bierman's update, Agee and Turner's rank-one sum (Bierman 1977).
 pub(crate) struct Ud<T: Scalar> {
     u: SMatrix<T, 4, 4>,
     d: [T; 4],

@@ -1,4 +1,4 @@
-//! What would make ranges and anchors agree: one thing changed after the other.
+//! Explanations that would make ranges and anchors agree: one thing changed at a time.
 
 use kestirim_health::Reason;
 use kestirim_uwb_ranging::{Observation, Solver};
@@ -8,28 +8,32 @@ use crate::Finding;
 use crate::metrics::median;
 use crate::robot::check::moments::Moment;
 
-/// What the ranges leave over is a contradiction from here on, m: beyond biases of 30 cm and a wall.
+/// The residual from which on ranges and anchors contradict each other, m: beyond biases of 30 cm and a wall.
 pub(super) const CONTRADICTION_M: f64 = 0.6;
-/// Fewer say nothing.
+/// The fewest moments from which a residual is computed.
 const FEWEST: usize = 12;
-/// Of so many anchors one that stands elsewhere is averaged down, and the others show the clearer that it is the one: from here on, m.
+/// The number of anchors among which a misplaced one is averaged out, but stands out more clearly; the residual is then
+/// judged from `OF_MANY_M` on, m.
 const MANY: usize = 6;
 const OF_MANY_M: f64 = 0.3;
-/// A change explains it if it leaves so much less, …
+/// The factor by which a change that explains a contradiction must reduce the residual.
 const EXPLAINS: f64 = 3.0;
-/// … and no more than this, m.
+/// The largest residual that such a change may leave, m.
 const EXPLAINED_M: f64 = 0.35;
-/// Where walls and people might do as much, it explains it if it leaves so much less: three anchors have but one range to spare, and noise alone leaves less than that.
+/// The factor by which a change must reduce a residual that walls and people might cause as well: three anchors have
+/// only one range to spare, and noise alone reduces it by less.
 const CLEARLY: f64 = 6.0;
-/// The standard deviation that all anchors' common bias may have, m.
+/// The standard deviation of the bias common to all anchors, m.
 const COMMON_BIAS_M: f64 = 0.5;
-/// A common excess explains as well as a height if it leaves no more than so much more: radios have one more often, m.
+/// The residual by which a common excess may be worse than a height and still explain as well, m: radios have an excess
+/// more often.
 const AS_WELL_M: f64 = 0.05;
-/// Heights that are tried against the one that was said, m.
+/// The height differences that are tried against the given height, m.
 const HEIGHTS: [f64; 6] = [-1.5, -1.0, -0.5, 0.5, 1.0, 1.5];
-/// What all ranges may be too long by, beyond what a common bias of half a metre explains, m.
+/// The common excesses of all ranges that are tried, beyond what a common bias of half a metre explains, m.
 const EXCESSES: [f64; 4] = [1.0, 1.5, 2.0, 3.0];
-/// What ranges may be instead of metres, and what to do about it. (Yards are as much less as a usual delay of antennas.)
+/// The units and factors that ranges may have instead of metres, and the remedies. (Yards are shorter by no more than a
+/// usual antenna delay.)
 const SCALES: [(f64, &str, &str); 5] = [
     (1e-3, "in millimetres", ": --units range=mm"),
     (1e-2, "in centimetres", ": --units range=cm"),
@@ -38,12 +42,13 @@ const SCALES: [(f64, &str, &str); 5] = [
     (2.0, "doubled", ": they may have been halved twice"),
 ];
 
-/// Ranges near nothing fit any anchors that are close together: a scale that is smaller than this …
+/// The scale below which ranges become so short that they fit any anchors that are close together.
 const SMALLEST: f64 = 0.1;
-/// … is one of ranges that are so many times as long as the farthest anchor is from their middle.
+/// Smaller scales are tried only for ranges longer than this many times the distance of the farthest anchor from the
+/// middle of all.
 const FAR: f64 = 10.0;
 
-/// Ranges and anchors of which changes are tried.
+/// Ranges and anchors to which changes are applied.
 pub(super) struct Tried<'a> {
     pub(super) moments: &'a [Moment],
     pub(super) anchors: &'a [Vector3<f64>],
@@ -51,7 +56,7 @@ pub(super) struct Tried<'a> {
 }
 
 impl Tried<'_> {
-    /// The median over the moments of what is left, m.
+    /// The median of the residuals over the moments, m.
     pub(super) fn left(
         &self,
         change: impl Fn(&Moment) -> Moment,
@@ -69,8 +74,8 @@ impl Tried<'_> {
         (each.len() >= FEWEST).then(|| median(&each))
     }
 
-    /// The one change with which ranges and as many anchors as are heard agree, if there is one: the reason, if positions suffer, and
-    /// what is to be done.
+    /// The single change with which ranges and the `heard` anchors agree, if there is one: the reason, if positions
+    /// suffer, and the remedy.
     pub(super) fn explanation(
         &self,
         left: f64,
@@ -82,7 +87,8 @@ impl Tried<'_> {
         let is_of_many = heard >= MANY && left >= OF_MANY_M;
         let explains = if is_contradiction || is_of_many { EXPLAINS } else { CLEARLY };
         let explained = |with: f64| (with < EXPLAINED_M && with * explains < left).then_some(with);
-        // Of four anchors three are left without one, and one range to spare; of three anchors there is but one.
+        // Without one of four anchors three remain, with one range to spare; of three anchors there is only one to
+        // begin with.
         let is_clear = is_contradiction || self.anchors.len() > 4;
         if let Some((with, (how, what))) = self.another_unit()
             && let Some(with) = explained(with)
@@ -100,7 +106,7 @@ impl Tried<'_> {
             let as_well = swapped.iter().skip(1).find(|(with, _)| *with < best + AS_WELL_M);
             let remedy = match as_well {
                 None => format!("with {} swapped {agree}", of_both([*a, *b])),
-                // In a rectangle both make rooms that are each other's mirror image, in which distances are the same.
+                // In a rectangle, both give rooms that are mirror images of each other, with the same distances.
                 Some((_, other)) => format!(
                     "with {} swapped {agree}, with {} as well: look at a plan, one room may mirror the other",
                     of_both([*a, *b]),
@@ -128,7 +134,8 @@ impl Tried<'_> {
                 "with all ranges {by:.1} m too long {}: calibrate the anchors (--calibration)",
                 agree(with)
             );
-            // From six anchors on the tracker estimates the common excess itself; of fewer, a part of it goes into positions.
+            // With six or more anchors the tracker estimates the common excess itself; with fewer, a part of it goes
+            // into positions.
             let reason = (heard < MANY).then_some(Reason::NotObservable);
             return Some((reason, remedy));
         }
@@ -151,7 +158,8 @@ impl Tried<'_> {
         None
     }
 
-    /// What is told of ranges with which least squares find no place at all: in millimetres or centimetres they are so long.
+    /// The finding about ranges for which least squares find no place at all: ranges in millimetres or centimetres are
+    /// so long.
     pub(super) fn too_far(&self) -> Option<Finding> {
         let (with, (how, what)) = self.another_unit().filter(|(with, _)| *with < EXPLAINED_M)?;
         let found = "ranges and anchors agree on no place".to_owned();
@@ -159,7 +167,7 @@ impl Tried<'_> {
         Some(Finding::fault("geometry", Reason::Units, found, "there is no position", remedy))
     }
 
-    /// As if the ranges were in the unit that fits best: how that is said, and what to do about it.
+    /// The residual with the ranges in the unit that fits best, with its name and the remedy.
     fn another_unit(&self) -> Option<(f64, (&'static str, &'static str))> {
         let ranges: Vec<f64> = self.moments.iter().flatten().map(|(_, range)| *range).collect();
         let centre = self.anchors.iter().sum::<Vector3<f64>>() / self.anchors.len().max(1) as f64;
@@ -175,7 +183,7 @@ impl Tried<'_> {
         each.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// As if all ranges were too long by the same.
+    /// The residual with all ranges shortened by the common excess that fits best, and that excess, m.
     fn longer(&self) -> Option<(f64, f64)> {
         let each = EXCESSES.into_iter().filter_map(|by| {
             let change =
@@ -185,7 +193,7 @@ impl Tried<'_> {
         each.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// With any two anchors in each other's place, the best first.
+    /// The residuals with any two anchors swapped, the best first.
     fn swapped(&self) -> Vec<(f64, [usize; 2])> {
         let count = self.anchors.len();
         let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| [a, b]));
@@ -199,7 +207,7 @@ impl Tried<'_> {
         each
     }
 
-    /// As if the log counted the anchors from another number on than the list.
+    /// The residual with the log counting the anchors from another number than the list, at the best shift.
     fn shifted(&self) -> Option<(f64, usize)> {
         let each = (1..self.anchors.len()).filter_map(|by| {
             let mut anchors = self.anchors.to_vec();
@@ -228,12 +236,12 @@ impl Tried<'_> {
     }
 }
 
-/// How well a change makes them agree.
+/// The agreement after a change, in words.
 fn agree(with: f64) -> String {
     format!("they would agree within {with:.2} m")
 }
 
-/// What least squares leave over of ranges, m, by how many they are beyond the unknowns; none if they are not.
+/// The residual of least squares per redundant range, m; `None` without redundancy.
 fn left_over(observations: &[Observation<f64>], height: Option<f64>) -> Option<f64> {
     let count = observations.len();
     let unknown = if height.is_some() { 2 } else { 3 };

@@ -1,23 +1,23 @@
-//! Cells of the report as points and as words.
+//! Cells of the report as points of figures and as text.
 
 use crate::figure::{Colour, Mark, Series};
 use crate::systems::drone::paper::report::{Report, Row};
 
-/// Which rows of the report: of a table, by a filter, whose cells have all of these words in their names.
+/// A selection of rows of the report: of one table and one filter, whose cell names contain all of the given words.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cells<'a> {
-    /// Table or figure.
+    /// The table or figure.
     pub(super) table: &'a str,
-    /// `published` or `best`.
+    /// The filter: `published` or `best`.
     pub(super) filter: &'a str,
-    /// Words.
+    /// The words that the cell names contain.
     pub(super) named: &'a [&'a str],
-    /// What stands before the abscissa.
+    /// The text that precedes the abscissa in the cell names.
     pub(super) key: &'a str,
 }
 
 impl Cells<'_> {
-    /// Their values over what stands behind the key.
+    /// Values of the rows over the number that follows the key.
     pub(super) fn points(
         &self,
         report: &Report,
@@ -29,7 +29,7 @@ impl Cells<'_> {
         points
     }
 
-    /// A line through means, with their standard errors.
+    /// A line through the means, with their standard errors.
     pub(super) fn line(&self, report: &Report, name: &str, colour: Colour) -> Series {
         let errors = self.points(report, |row| row.mean_m.map(|_| row.se_m.unwrap_or(f64::NAN)));
         Series::path(name, self.points(report, |row| row.mean_m))
@@ -38,13 +38,13 @@ impl Cells<'_> {
             .with_error(errors.into_iter().map(|[_, error]| error).collect())
     }
 
-    /// A broken line through what is published.
+    /// A dashed line through the published values.
     pub(super) fn published(&self, report: &Report, name: &str, colour: Colour) -> Series {
         let points = self.points(report, |row| row.published);
         Series::path(name, points).marked(Mark::Dashes).coloured(colour)
     }
 
-    /// A broken line through the limit.
+    /// A dashed line through the limits.
     pub(super) fn limit(&self, report: &Report) -> Series {
         let points = self.points(report, |row| row.limit_m);
         Series::path("limit", points).marked(Mark::Dashes).coloured(Colour::Limit)
@@ -62,7 +62,7 @@ impl Cells<'_> {
     }
 }
 
-/// A mean with its standard error.
+/// A mean with its standard error, as text.
 pub(super) fn mean(row: &Row) -> String {
     match (row.mean_m, row.se_m) {
         (Some(mean), Some(error)) => format!("{mean:.1} ± {error:.1}"),
@@ -71,7 +71,7 @@ pub(super) fn mean(row: &Row) -> String {
     }
 }
 
-/// A number without decimals, or nothing.
+/// A number without decimals; empty if there is none.
 pub(super) fn whole(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| format!("{value:.0}"))
 }

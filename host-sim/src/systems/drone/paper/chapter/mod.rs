@@ -1,4 +1,4 @@
-//! The drone's part of the report: the thesis' chapter 3 in its order, then what goes beyond it.
+//! The drone's part of the report: the thesis' chapter 3 in its order, followed by what goes beyond it.
 
 mod cells;
 mod moving;
@@ -12,10 +12,10 @@ use crate::report::{Chapter, Item, Made};
 use crate::system::System;
 use crate::systems::drone::Drone;
 
-/// The whole chapter.
+/// The complete chapter.
 ///
 /// # Errors
-/// None: what a report of one cell alone has no rows for is left out.
+/// None: items for which a report of a single cell has no rows are left out.
 pub fn chapter(report: &Report) -> Result<Chapter, Error> {
     let walks = moving::Walks::new(report);
     let mut items: Vec<Item> = staying::items(report);
@@ -40,7 +40,7 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
     })
 }
 
-/// How the tables of the command came about; of so many of something.
+/// How the tables of the command were made, with the number of trials.
 fn made(report: &Report, trials: impl Into<String>) -> Made {
     let scalar = format!("{:?}", report.scalar).to_lowercase();
     let seed = report.seed;

@@ -1,4 +1,4 @@
-//! A user who walks: Table 3.5, Figs 3.6 to 3.12.
+//! Figures and tables of a walking user: Table 3.5, Figs 3.6 to 3.12.
 
 use kestirim_particle_filter::Resampler;
 use kestirim_replay::drone::{EnvironmentKind, Estimate, Track};
@@ -12,20 +12,20 @@ use crate::systems::drone::paper::report::{Report, Row};
 use crate::systems::drone::settings::expected_loss_db;
 use crate::systems::drone::simulate::moving_user::{LOST_M, Policy, SIDE_M, Walk, track};
 
-/// Flights that are drawn.
+/// The flights that are drawn.
 pub(super) struct Walks {
     hovering: Track,
     orbiting: Track,
 }
 
 impl Walks {
-    /// With the report's seed.
+    /// Simulates the flights with the report's seed.
     pub(super) fn new(report: &Report) -> Self {
         let of = |policy| track(&Walk::thesis(policy), report.seed, 0);
         Self { hovering: of(Policy::Hover(Resampler::Systematic)), orbiting: of(Policy::Orbit) }
     }
 
-    /// Of the flight that circles the estimate.
+    /// The streams of the flight that circles the estimate.
     pub(super) fn streams(&self) -> Vec<Stream> {
         let (track, channel) = (&self.orbiting, EnvironmentKind::Urban.channel());
         let stream = |topic: &str, columns: &[&str], values: &dyn Fn(&Estimate) -> Vec<f64>| {
@@ -54,7 +54,7 @@ impl Walks {
     }
 }
 
-/// In the thesis' order.
+/// The items in the thesis' order.
 pub(super) fn items(report: &Report, walks: &Walks) -> Vec<Item> {
     let once = made(report, "1 flight each");
     let mut items = vec![
@@ -95,7 +95,7 @@ pub(super) fn items(report: &Report, walks: &Walks) -> Vec<Item> {
     items
 }
 
-/// Error, energy and share of lost users of both policies, and the table.
+/// The error, energy and share of lost users of both policies, and the table.
 fn sweep(
     report: &Report,
     table: &str,
@@ -138,7 +138,7 @@ fn sweep(
     items
 }
 
-/// Paths of drone and user, and where the drone believes the user to be.
+/// The paths of drone and user, and the estimates of the user's position.
 fn drawn(track: &Track, (id, title): (&str, &str), caption: &str) -> Figure {
     let path = |name: &str, place: &dyn Fn(&Estimate) -> Option<[f64; 2]>, colour| {
         Series::path(name, track.estimates.iter().filter_map(place)).coloured(colour)

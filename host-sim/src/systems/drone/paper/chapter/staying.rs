@@ -1,4 +1,4 @@
-//! A user who stays: Figs 3.1 to 3.5, Table 3.2.
+//! Figures and tables of a stationary user: Figs 3.1 to 3.5, Table 3.2.
 
 use super::cells::Cells;
 use super::{made, tables};
@@ -8,7 +8,7 @@ use crate::systems::drone::paper::report::Report;
 use crate::systems::drone::settings::choices::ResamplerKind;
 use crate::systems::drone::simulate::trajectory::Trajectory;
 
-/// In the thesis' order.
+/// The items in the thesis' order.
 pub(super) fn items(report: &Report) -> Vec<Item> {
     let mut items = paths(report);
     items.extend(tables::of(report, "Table 3.2", (
@@ -29,7 +29,7 @@ pub(super) fn items(report: &Report) -> Vec<Item> {
     items
 }
 
-/// Fig. 3.1: where the drone measures.
+/// Fig. 3.1: the measurement positions of the drone.
 fn paths(report: &Report) -> Vec<Item> {
     if report.rows.iter().all(|row| row.table != "Table 3.2") {
         return Vec::new();
@@ -51,7 +51,7 @@ fn paths(report: &Report) -> Vec<Item> {
     vec![made(report, "none: nothing is random").item(figure)]
 }
 
-/// A sweep: published, both filters, limit; nothing without cells.
+/// A figure of a sweep: published values, both filters and the limit; `None` if the report has no such cells.
 fn sweep(
     report: &Report,
     (table, named, key): (&str, &[&str], &str),
@@ -97,7 +97,7 @@ fn sweeps(report: &Report) -> impl Iterator<Item = Item> {
     [radius, height, particles].into_iter().flatten()
 }
 
-/// Figs 3.2 and 3.3.
+/// Figs 3.2 and 3.3: the resamplers.
 fn resamplers(report: &Report) -> Vec<Item> {
     let mut items = Vec::new();
     items.extend(sweep(
@@ -141,7 +141,7 @@ fn resamplers(report: &Report) -> Vec<Item> {
     items
 }
 
-/// Fig. 3.4.
+/// Fig. 3.4: the energy.
 fn energy(report: &Report) -> Vec<Item> {
     let table = "Fig. 3.4 (energy)";
     let rows: Vec<_> = report.rows.iter().filter(|row| row.table == table).collect();
@@ -186,7 +186,7 @@ fn energy(report: &Report) -> Vec<Item> {
     vec![once.item(figure), once.item(comparison)]
 }
 
-/// Fig. 3.5.
+/// Fig. 3.5: the trajectories.
 fn trajectories(report: &Report) -> Vec<Item> {
     let table = "Fig. 3.5";
     let mut figure = Figure::new("drone-fig-3-5", "Fig. 3.5, mean error of grid and circle")

@@ -1,10 +1,10 @@
-//! The few numbers that matter most.
+//! The few most important numbers.
 
 use super::cells::{mean, whole};
 use crate::report::{Comparison, Headline};
 use crate::systems::drone::paper::report::{Report, Row};
 
-/// Cells of Table 3.2 and Fig. 3.2: table, name, and what it is for people.
+/// Cells of Table 3.2 and Fig. 3.2: the table, the name, and the description for people.
 const CELLS: [(&str, &str, &str); 5] = [
     ("Table 3.2", "L=1000 T=12 h=500 r=2000/3", "stays: h = 500 m, L = 1000"),
     ("Table 3.2", "L=1000 T=12 h=200 r=2000/3", "stays: h = 200 m, L = 1000"),
@@ -12,14 +12,14 @@ const CELLS: [(&str, &str, &str); 5] = [
     ("Fig. 3.2", "systematic T=20", "stays: h = 800 m, 20 measurements"),
     ("Fig. 3.5", "grid T=25, once at h=800", "stays: h = 800 m, grid of 25"),
 ];
-/// Who follows, and what that is for people.
+/// Policies of following, and their descriptions for people.
 const WALKS: [(&str, &str); 3] = [
     ("walks: thesis: hovering over the estimate", "walks: drone hovers over the estimate (thesis)"),
     ("walks: orbit, velocity marginalised", "walks: drone circles the estimate"),
     ("walks: the same, 100 to 1000 m high", "walks: the same, 100 to 1000 m high"),
 ];
 
-/// Means with standard errors; of a report of one cell its rows.
+/// Means with standard errors; of a report of a single cell, its rows.
 pub(super) fn summary(report: &Report) -> Comparison {
     let mut table = Comparison::new("drone-summary", "Drone: mean distance from the user, m");
     for (source, name, words) in CELLS {
@@ -53,7 +53,7 @@ pub(super) fn summary(report: &Report) -> Comparison {
     ))
 }
 
-/// A row of the thesis' filter, or of ours.
+/// Adds a row of the thesis' filter or of ours.
 fn add(
     table: Comparison,
     row: &Row,
@@ -68,7 +68,7 @@ fn add(
     }
 }
 
-/// What the first page says: a user who stays, and one who walks.
+/// The headlines of the first page: a stationary user and a walking one.
 pub(super) fn headlines(report: &Report) -> Vec<Headline> {
     let find = |is: &dyn Fn(&Row) -> bool| report.rows.iter().find(|row| is(row));
     let (source, cell, words) = CELLS[0];

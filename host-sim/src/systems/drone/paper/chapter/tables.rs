@@ -1,11 +1,11 @@
-//! Rows of the report as tables.
+//! Tables made from rows of the report.
 
 use super::cells::{mean, whole};
 use super::made;
 use crate::report::{Comparison, Item, Value};
 use crate::systems::drone::paper::report::{Report, Row};
 
-/// The table of some rows, one row a cell, and how many trials it is of; none without rows.
+/// A table with a row per cell, and the number of trials; `None` if there are no rows.
 pub(super) fn of(
     report: &Report,
     table: &str,
@@ -34,7 +34,7 @@ pub(super) fn of(
     Some(made(report, trials).item(comparison))
 }
 
-/// What a filter makes of a cell.
+/// The result of a filter in a cell, as text.
 fn words(row: &Row) -> String {
     let energy = row.energy_j.filter(|_| row.lost_percent.is_some());
     let energy = energy.map_or_else(String::new, |joules| format!(" m, {:.0} kJ", joules / 1e3));
@@ -43,7 +43,7 @@ fn words(row: &Row) -> String {
     format!("{}{energy}{lost}{z}", mean(row))
 }
 
-/// The numbers of a row.
+/// The numbers of a row, for other programs.
 pub(super) fn values(row: &Row) -> Vec<Value> {
     let method = match row.filter {
         "published" => "published method",
@@ -53,7 +53,7 @@ pub(super) fn values(row: &Row) -> Vec<Value> {
     let of = |quantity: &str, unit| {
         Value::new(quantity, unit).under(format!("{}: {}", row.table, row.cell)).by(method)
     };
-    // Of the formulas of Fig. 3.4 it is the energy that is published.
+    // For the formulas of Fig. 3.4 the published number is the energy.
     let published = row.published.filter(|_| row.mean_m.is_some());
     let quantity = match row.table {
         table if table.contains("maximum") => "expected largest of 100 errors of the position",
@@ -67,7 +67,7 @@ pub(super) fn values(row: &Row) -> Vec<Value> {
     [error, energy, lost].into_iter().filter(|value| value.value.is_some()).collect()
 }
 
-/// What no table of the thesis has.
+/// The table of results that go beyond the thesis.
 pub(super) fn beyond(report: &Report) -> Option<Item> {
     let words = (
         "drone-beyond",

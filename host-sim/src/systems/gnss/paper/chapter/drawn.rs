@@ -1,4 +1,4 @@
-//! Station-days of the experiment again, this time with all that becomes of them.
+//! Station-days of the experiment, run again with full details.
 
 use kestirim_ppp_filter::Motion;
 use kestirim_replay::gnss::{BEGINNING, FilterKind, Followed, Recording};
@@ -17,16 +17,16 @@ use crate::systems::gnss::settings::Setup;
 use crate::systems::gnss::simulate::{Day, Rates};
 use crate::systems::gnss::track::Track;
 
-/// Station-days that are drawn; the paper draws three.
+/// The number of station-days drawn; the paper draws three.
 const DRAWN: usize = 3;
-/// Filters of which the paper has kinematic solutions, and ours.
+/// The filters that the paper gives kinematic solutions for, and ours.
 const MOVING: [FilterKind; 3] = [FilterKind::Ikf, FilterKind::Adaptive, FilterKind::Default];
 
-/// What filters made of the first few station-days.
+/// The filters' results on the first few station-days.
 pub(super) struct Days {
-    /// Of each station-day: its place, ECEF, m, and all filters of a receiver that stands still.
+    /// The position (ECEF, m) and all static filters of each station-day.
     standing: Vec<(Vector3<f64>, Filters)>,
-    /// The first day's filters of a receiver that may move.
+    /// The kinematic filters of the first station-day.
     moving: Filters,
 }
 
@@ -59,7 +59,7 @@ impl Days {
         Ok(Self { standing: standing?, moving })
     }
 
-    /// The paper's figure 3: what is left in the codes.
+    /// The paper's figure 3: the residuals of the codes.
     pub(super) fn residuals(&self) -> impl Iterator<Item = Figure> {
         let filters = self.standing.first().into_iter().flat_map(|(_, filters)| filters);
         filters.map(|(filter, followed)| {
@@ -77,7 +77,7 @@ impl Days {
         })
     }
 
-    /// The paper's figure 4: errors of a receiver that stands still; each with the day's number.
+    /// The paper's figure 4: errors of static filters, each with the day's number.
     pub(super) fn standing(&self) -> impl Iterator<Item = (usize, Figure)> {
         (1..).zip(&self.standing).map(|(day, (marker, filters))| {
             let figure = Figure::new(
@@ -92,7 +92,7 @@ impl Days {
         })
     }
 
-    /// The paper's figure 5: errors of a receiver that may move.
+    /// The paper's figure 5: errors of kinematic filters.
     pub(super) fn moving(&self) -> Figure {
         let figure =
             Figure::new("gnss-figure-5", "Figure 5: 3-D error of kinematic filters, station-day 1");
@@ -102,7 +102,7 @@ impl Days {
         )
     }
 
-    /// Our own: whether the default knows how good it is.
+    /// A figure of our own: whether the default filter reports its accuracy correctly.
     pub(super) fn trusted(&self) -> Figure {
         let figure = Figure::new(
             "gnss-deviation",
@@ -120,7 +120,7 @@ impl Days {
         ))
     }
 
-    /// The first day with the default.
+    /// The streams of the first day with the default filter.
     pub(super) fn streams(&self) -> Vec<Stream> {
         self.best().map_or_else(Vec::new, |it| streams::streams(it, &self.place(), true))
     }

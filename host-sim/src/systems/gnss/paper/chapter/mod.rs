@@ -1,4 +1,4 @@
-//! The system's part of the report: the paper's tables and figures, and what the default makes of them.
+//! The system's part of the report: the paper's tables and figures, and the results of the default filter.
 
 mod drawn;
 mod tables;
@@ -9,7 +9,7 @@ use crate::report::{Chapter, Made};
 use crate::system::System;
 use crate::systems::gnss::Gnss;
 
-/// The chapter on what was run.
+/// The chapter of an experiment.
 ///
 /// # Errors
 /// [`Error::File`] if a filter finds no position on a station-day that is drawn.
@@ -76,7 +76,8 @@ mod tests {
         }));
     }
 
-    /// What figure 3 shows in the paper: outliers are left in the plain filter's codes, not in the default's.
+    /// Checks what the paper's figure 3 shows: outliers remain in the plain filter's code residuals, but not in the
+    /// default's.
     #[test]
     fn outliers_are_left_to_the_plain_filter_alone() {
         let options = RunOptions { trials: Some(1), seed: 2, scalar: None };

@@ -1,4 +1,4 @@
-//! Published beside ours.
+//! Tables of published results beside ours.
 
 use kestirim_replay::gnss::FilterKind;
 
@@ -6,7 +6,7 @@ use crate::report::{Comparison, Headline, Value};
 use crate::systems::gnss::paper::experiment::{CLEAN, KINEMATIC, Report, Row, STATIC, four};
 use crate::systems::gnss::paper::published::PppErrors;
 
-/// The paper's Table 2, and what each filter is as published.
+/// The paper's Table 2, and each filter as published.
 pub(super) fn standing(report: &Report) -> Comparison {
     let table = Comparison::new("gnss-table-2", "Table 2: static receivers (mean of station-days)");
     let table = with_rows(table, report, STATIC, plain(report, 0));
@@ -22,16 +22,16 @@ pub(super) fn standing(report: &Report) -> Comparison {
     ))
 }
 
-/// The static filters of the paper by a measure, the largest first.
+/// The paper's static filters ordered by a measure, the largest first.
 fn in_order(report: &Report, measure: impl Fn(&Row) -> Option<f64>) -> String {
     let rows = report.rows.iter().filter(|row| row.table == STATIC);
     let mut rows: Vec<_> = rows.filter_map(|row| Some((row.filter, measure(row)?))).collect();
-    // Those that are alike stay in the order of the table.
+    // The sort is stable: equal ones stay in the order of the table.
     rows.sort_by(|(_, a), (_, b)| b.total_cmp(a));
     rows.into_iter().map(|(filter, _)| filter).collect::<Vec<_>>().join(", ")
 }
 
-/// The paper's Table 3.
+/// The paper's Table 3: kinematic filters.
 pub(super) fn moving(report: &Report) -> Comparison {
     let title = format!(
         "Table 3: receivers that may move, {:e} m²/s (mean of station-days)",
@@ -46,7 +46,7 @@ pub(super) fn moving(report: &Report) -> Comparison {
     )
 }
 
-/// What the default costs where nothing goes wrong.
+/// The cost of the default filter on days without faults.
 pub(super) fn without_faults(report: &Report) -> Comparison {
     let table = Comparison::new(
         "gnss-without-faults",
@@ -63,7 +63,7 @@ pub(super) fn without_faults(report: &Report) -> Comparison {
     })
 }
 
-/// What matters most: the errors in three dimensions.
+/// The most important numbers: the 3-D errors.
 pub(super) fn summary(report: &Report) -> Comparison {
     let mut table = Comparison::new(
         "gnss-summary",
@@ -86,7 +86,7 @@ pub(super) fn summary(report: &Report) -> Comparison {
     table.note("limit: the plain filter on the same days without faults")
 }
 
-/// The plain filter on clean days: static (0) or kinematic (2).
+/// The plain filter on days without faults: static (0) or kinematic (2).
 fn plain(report: &Report, place: usize) -> Option<&PppErrors> {
     let clean = report.rows.iter().filter(|row| row.table == CLEAN);
     clean.map(|row| &row.ours).nth(place)
@@ -127,7 +127,7 @@ fn with_rows(
     })
 }
 
-/// A row of the paper's filters, or of ours: published, as it came out here, limit.
+/// Adds a row of the paper's filters, or of ours: published value, result here, limit.
 fn add(
     table: Comparison,
     row: &Row,
@@ -141,14 +141,14 @@ fn add(
     }
 }
 
-/// Whether a row is of the default filter, whatever is said of how it moves.
+/// Whether a row is of the default filter, with any motion model.
 fn is_ours(row: &Row) -> bool {
     row.filter.starts_with(FilterKind::Default.title())
 }
 
-/// By the filter of a row, on its days.
+/// Sets the method and condition of a value to the filter and days of a row.
 fn by(row: &Row, value: Value) -> Value {
-    // What is said of how it moves is no part of the filter's name.
+    // The motion model is not part of the filter's name.
     let (filter, moves) = row.filter.split_once(", ").unwrap_or((row.filter, ""));
     let method = match filter {
         _ if is_ours(row) => "default".to_owned(),
@@ -164,7 +164,7 @@ fn by(row: &Row, value: Value) -> Value {
     value.under(condition.trim_end_matches(", ")).by(method).of(row.days.len(), None)
 }
 
-/// The numbers of north, east, up and all three, with published ones and limits.
+/// The values for north, east, up and 3-D, with published ones and limits.
 fn numbers(
     row: &Row,
     quantity: &str,
@@ -178,7 +178,7 @@ fn numbers(
     })
 }
 
-/// What matters most: where it stands, and where it may move.
+/// The most important results: a static and a kinematic solution.
 pub(super) fn headlines(report: &Report) -> Vec<Headline> {
     let line = |table: &str, paper: FilterKind, filter: &str, place: usize, quantity: &str| {
         let find = |filter: &str| {

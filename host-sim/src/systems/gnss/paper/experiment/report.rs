@@ -1,4 +1,4 @@
-//! What the experiment reports.
+//! The report of the experiment.
 
 use std::fmt;
 
@@ -14,26 +14,26 @@ use crate::systems::gnss::simulate::trial::Score;
 /// A filter's errors.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
-    /// Table of the paper, or what goes beyond it.
+    /// The table of the paper, or a name for what goes beyond it.
     pub table: &'static str,
-    /// Which filter.
+    /// The name of the filter.
     pub filter: &'static str,
-    /// What the paper publishes.
+    /// The errors published in the paper.
     pub published: Option<PppErrors>,
-    /// Means over the station-days; the convergence's over those that converged.
+    /// The means over the station-days; that of the convergence time is over those that converged.
     pub ours: PppErrors,
-    /// Largest RMS of a station-day, mm.
+    /// The largest RMS error of a station-day (mm).
     pub worst_rms_mm: f64,
-    /// Station-days whose solution did not converge.
+    /// The number of station-days whose solution did not converge.
     pub unconverged: usize,
-    /// Epochs without a solution, of all station-days.
+    /// The number of epochs without a solution, over all station-days.
     pub unsolved: usize,
-    /// Each station-day.
+    /// The scores of each station-day.
     pub days: Vec<Score>,
 }
 
 impl Row {
-    /// The means of station-days.
+    /// The means of the station-days.
     pub fn of(
         table: &'static str,
         filter: &'static str,
@@ -63,7 +63,8 @@ impl Row {
 }
 
 impl Row {
-    /// Minutes until convergence in words, with what did not converge or had no solution.
+    /// The minutes until convergence as text, with the numbers of days that did not converge and of epochs without a
+    /// solution.
     pub(in crate::systems::gnss::paper) fn converged(&self) -> String {
         let mean = self.ours.convergence_min.map_or("never".to_owned(), |it| format!("{it:.1}"));
         let never = match self.unconverged {
@@ -84,20 +85,20 @@ impl Row {
     }
 }
 
-/// All filters on the same station-days.
+/// The results of all filters on the same station-days.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
     /// Always `gnss`.
     pub system: &'static str,
     /// Seed of all randomness.
     pub seed: u64,
-    /// Number type of the filters.
+    /// The number type of the filters.
     pub scalar: ScalarKind,
-    /// Station-days.
+    /// The number of station-days.
     pub trials: usize,
-    /// Variance that kinematic filters give each coordinate, m²/s.
+    /// The variance rate of each coordinate in kinematic filters (m²/s).
     pub process_noise: f64,
-    /// The filters.
+    /// The rows of all filters.
     pub rows: Vec<Row>,
 }
 
@@ -122,7 +123,7 @@ fn shown(rows: &[Row]) -> Table {
     let mut table = output::table();
     let title = rows.first().map_or("", |row| row.table);
     let compared = rows.iter().any(|row| row.published.is_some());
-    // What was not published needs no columns.
+    // If nothing was published there are no columns for it.
     let cells = |first: String, pairs: [[String; 2]; 3]| {
         let pairs = pairs.into_iter().flat_map(|[published, ours]| {
             compared.then_some(published).into_iter().chain(std::iter::once(ours))
@@ -153,7 +154,7 @@ fn shown(rows: &[Row]) -> Table {
     table
 }
 
-/// North, east, up and three-dimensional, mm.
+/// Values for north, east, up and 3-D, as text (mm).
 pub(in crate::systems::gnss::paper) fn four(numbers: [f64; 4]) -> String {
     numbers.map(|number| format!("{number:.1}")).join(" ")
 }

@@ -1,5 +1,5 @@
-//! The figures of the paper, of one walk. As there, the sensor is that of a log at 100 Hz and the position that of
-//! one at 50 Hz.
+//! The figures of the paper, from one walk. As in the paper, the sensor data are those of a log at 100 Hz and the
+//! position that of one at 50 Hz.
 
 use kestirim_replay::pedestrian::{DetectorKind, Trace};
 
@@ -11,7 +11,7 @@ use crate::systems::pedestrian::figures::{self, Placed};
 use crate::systems::pedestrian::paper::published::AFTER_15_S;
 use crate::systems::pedestrian::simulate::scenario::Scenario;
 
-/// Figs 8 to 11: what the sensor says, and stance in it.
+/// Figs 8 to 11: the sensor data, and the stance detected in them.
 pub(super) fn of_the_sensor(walk: &Typical) -> [Figure; 4] {
     let samples = &walk.recording.log.samples;
     let placed = |trace| Placed::new(trace, &[]);
@@ -30,7 +30,7 @@ pub(super) fn of_the_sensor(walk: &Typical) -> [Figure; 4] {
     ]
 }
 
-/// Figs 12 to 15: the velocity as it should be, without and with updates.
+/// Figs 12 to 15: the ideal velocity, and that without and with updates.
 pub(super) fn of_the_velocity(slow: &Typical, fast: &Typical, truth: &Scenario) -> [Figure; 4] {
     let ours = placed(fast, &fast.ours);
     let without = Placed { trace: &fast.drifting, placement: ours.placement };
@@ -55,7 +55,7 @@ pub(super) fn of_the_velocity(slow: &Typical, fast: &Typical, truth: &Scenario) 
     ]
 }
 
-/// Figs 16 and 17: position over time, and the path.
+/// Figs 16 and 17: the position over time, and the path.
 pub(super) fn of_the_position(walk: &Typical) -> [Figure; 2] {
     let truth = walk.recording.truth();
     let ours = placed(walk, &walk.ours);
@@ -79,7 +79,7 @@ fn placed<'a>(walk: &Typical, trace: &'a Trace) -> Placed<'a> {
     Placed::new(trace, &walk.recording.truth())
 }
 
-/// The velocity that the foot had.
+/// The true velocity of the foot.
 fn ideal(id: &str, truth: &Scenario, samples: &[Sample]) -> Figure {
     let half_s = 5e-4;
     let times: Vec<_> = samples.iter().map(|sample| figures::seconds(sample.time_us)).collect();

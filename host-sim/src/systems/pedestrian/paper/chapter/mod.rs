@@ -15,10 +15,10 @@ use crate::systems::pedestrian::Pedestrian;
 use crate::systems::pedestrian::figures::streams;
 use crate::systems::pedestrian::recording::{Recording, Walked};
 
-/// The chapter of a report.
+/// The chapter of an experiment's report.
 ///
 /// # Errors
-/// None that the experiment itself did not have.
+/// No others than those of the experiment.
 pub fn chapter(report: &Report) -> Result<Chapter, Error> {
     let Report { seed, trials, .. } = *report;
     let scalar = format!("{:?}", report.scalar).to_lowercase();
@@ -88,7 +88,7 @@ fn summary(report: &Report) -> Comparison {
     summary
 }
 
-/// One walk of the experiment, tracked by us, by the paper's method, and without zero-velocity updates.
+/// One walk of the experiment, tracked by our method, by the paper's, and without zero-velocity updates.
 struct Typical {
     recording: Recording,
     ours: Trace,

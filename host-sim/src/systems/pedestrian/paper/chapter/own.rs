@@ -1,4 +1,4 @@
-//! Beyond the paper: how errors are spread, and what each choice of tracker and detector gives.
+//! Results beyond the paper: the distribution of errors, and a comparison of trackers and detectors.
 
 use kestirim_replay::pedestrian::{DetectorKind, Options, TrackerKind, walk};
 use rayon::prelude::*;
@@ -11,10 +11,10 @@ use crate::report::{Comparison, Value};
 use crate::system::ScalarKind;
 use crate::systems::pedestrian::recording::{Recording, Walked};
 
-/// Walks on which methods are compared.
+/// The number of walks on which methods are compared.
 pub(super) const COMPARED: u64 = 20;
 
-/// Which share of the walks has an error below what.
+/// The cumulative distribution of the walks' errors.
 pub(super) fn distribution(report: &Report) -> Figure {
     let mut figure = Figure::new("pedestrian-errors", "Errors of the path's length")
         .axes("error of the length, %", "share of walks below, %")
@@ -43,7 +43,7 @@ fn cumulative(name: String, lengths_m: &[f64]) -> Series {
     Series::line(name, errors, shares)
 }
 
-/// Every tracker and detector on the same walks.
+/// A comparison of all trackers and detectors on the same walks.
 pub(super) fn methods(report: &Report) -> Result<Comparison, Error> {
     let default = Options { scalar: report.scalar, ..Options::default() };
     let with = |detector| Options { detector, ..default };

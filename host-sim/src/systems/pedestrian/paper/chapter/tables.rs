@@ -8,7 +8,7 @@ use crate::systems::pedestrian::paper::published::{LOG_LINES, ROUTE_M};
 use crate::systems::pedestrian::simulate::scenario::Scenario;
 use crate::systems::pedestrian::simulate::sensor::razor_text;
 
-/// Columns of Table 1, with their units.
+/// The columns of Table 1, with their units.
 const LOG_COLUMNS: [(&str, &str); 7] = [
     ("time", "ms"),
     ("specific force x", "g"),
@@ -96,7 +96,7 @@ pub(super) fn walks(row: &Row) -> Comparison {
         ))
 }
 
-/// The numbers of [`walks`].
+/// The numbers of [`walks`], for other programs.
 fn values(row: &Row) -> Vec<Value> {
     let rate = format!("{} Hz", row.rate_hz);
     let all = row.ours.lengths_m.len();
@@ -129,7 +129,7 @@ fn values(row: &Row) -> Vec<Value> {
     values
 }
 
-/// What matters most.
+/// The most important result.
 pub(super) fn headline(row: &Row) -> Headline {
     Headline {
         quantity: format!("mean error of a walk's length at {} Hz", row.rate_hz),
@@ -141,10 +141,10 @@ pub(super) fn headline(row: &Row) -> Headline {
     }
 }
 
-/// Mean relative error and σ: published and ours.
+/// The mean relative error and σ: published and ours.
 pub(super) fn errors(row: &Row) -> [(String, String); 2] {
     let cells = |error: f64, sigma_m: f64| {
-        // As many digits of σ as printed.
+        // σ has as many digits as in the paper.
         (format!("{error:.2} %"), format!("{} cm", (1e4 * sigma_m).round() / 100.0))
     };
     [
@@ -153,7 +153,7 @@ pub(super) fn errors(row: &Row) -> [(String, String); 2] {
     ]
 }
 
-/// Mean relative error and σ of the paper's method, taken literally.
+/// The mean relative error and σ of the paper's method, implemented literally.
 pub(super) fn of_the_papers_method(row: &Row) -> String {
     let method = &row.paper_method;
     format!("{:.1} %, σ {:.0} cm", method.mean_relative_error_percent, 100.0 * method.sigma_m)

@@ -1,4 +1,4 @@
-//! One day in the office, followed by every tracker.
+//! One day in the office, tracked by every tracker.
 
 use kestirim_replay::ScalarKind;
 use kestirim_replay::robot::{Beginning, Noise, Setup, Trace, TrackerKind, build_published};
@@ -8,19 +8,19 @@ use crate::systems::robot::recording::{Recording, Truth};
 use crate::systems::robot::settings::of_the_office;
 use crate::systems::robot::track::{Tracks, track, track_by};
 
-/// A recording, and what each tracker makes of it.
+/// A recording, with the results of each tracker.
 pub(super) struct Day {
-    /// What was recorded.
+    /// The recording that is tracked.
     pub(super) recording: Recording,
-    /// Trilateration alone.
+    /// The traces of trilateration alone.
     pub(super) unfiltered: Vec<Trace>,
-    /// The paper's filters, begun at the first trilateration: plain and adaptive.
+    /// The traces of the paper's filters started at the first trilateration: plain and adaptive.
     pub(super) honest: [Vec<Trace>; 2],
-    /// The same, begun where the tag truly was.
+    /// The traces of the paper's filters started at the tag's true position: plain and adaptive.
     pub(super) from_the_truth: [Vec<Trace>; 2],
-    /// Our default without calibration …
+    /// The traces of our default without calibration.
     pub(super) ours: Vec<Trace>,
-    /// … and with it, smoothed, too.
+    /// The tracks of our default with calibration, including the smoothed one.
     pub(super) calibrated: Tracks,
 }
 
@@ -48,7 +48,7 @@ impl Day {
     }
 }
 
-/// The paper's protocol: the surveyed point of each part is given to the filter as its start.
+/// Tracks by the paper's protocol: the filter is started at the surveyed point of each part.
 fn each_from_its_truth(
     recording: &Recording,
     setup: &Setup,

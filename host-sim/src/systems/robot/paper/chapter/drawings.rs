@@ -1,4 +1,4 @@
-//! The figures of the paper, of one day, and ours.
+//! The figures of the paper, from one day, and our own.
 
 use kestirim_replay::robot::Trace;
 
@@ -25,7 +25,7 @@ pub(super) fn office(points: &Day, line: &Day) -> Figure {
     )
 }
 
-/// Table 1, drawn.
+/// A figure of Table 1.
 pub(super) fn table_1(report: &Report) -> Figure {
     let numbers: Vec<f64> = (1..=report.points.len()).map(|number| number as f64).collect();
     let of = |name: &str, mark, colour, value: fn(&Row) -> f64| {
@@ -81,7 +81,7 @@ fn three(day: &Day, ids: [&str; 3], numbers: [&str; 3], what: &str) -> [Figure; 
     let told = |traces| of("started at the truth", traces, Colour::Alarm);
     let figure = |i: usize, by: &str, series: Vec<Series>, caption: &str| {
         let figure = plan::room(ids[i], &day.recording).with_all(series);
-        // A filter that runs away must not shrink the office to a dot.
+        // A filter that diverges must not shrink the office to a dot.
         titled(within(figure, &day.recording), &format!("{}: {what}, {by}", numbers[i]), caption)
     };
     [
@@ -128,7 +128,7 @@ pub(super) fn ours(day: &Day, id: &str, title: &str) -> Figure {
     titled(within(figure, &day.recording), title, &format!("{caption}."))
 }
 
-/// The ranges of the round, with what was left out.
+/// The ranges of the round, with those rejected.
 pub(super) fn round_ranges(day: &Day) -> Figure {
     let ranges = Shown::new(&day.recording, &day.calibrated.traces).ranges("robot-round-ranges");
     titled(
@@ -138,7 +138,7 @@ pub(super) fn round_ranges(day: &Day) -> Figure {
     )
 }
 
-/// Errors over time on the round.
+/// The errors over time on the round.
 pub(super) fn round_errors(day: &Day) -> Figure {
     let of = |name: &str, traces: &[Trace], colour| {
         Shown::new(&day.recording, traces).error(name).coloured(colour)
@@ -160,7 +160,7 @@ pub(super) fn round_errors(day: &Day) -> Figure {
     )
 }
 
-/// Showing the office and a metre about it.
+/// Limits a figure to the office and a metre around it.
 fn within(figure: Figure, recording: &Recording) -> Figure {
     let [x0, y0, x1, y1] = recording.anchors.rectangle();
     figure.showing(Some([x0 - 1.0, x1 + 1.0]), Some([y0 - 1.0, y1 + 1.0]))

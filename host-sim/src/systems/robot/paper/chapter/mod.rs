@@ -13,10 +13,10 @@ use crate::systems::robot::Robot;
 use crate::systems::robot::figures::streams::streams;
 use crate::systems::robot::recording::{Driven, Recording};
 
-/// The chapter of a report.
+/// The chapter of an experiment's report.
 ///
 /// # Errors
-/// None that the experiment itself did not have.
+/// No others than those of the experiment.
 pub fn chapter(report: &Report) -> Result<Chapter, Error> {
     let Report { seed, trials, .. } = *report;
     let scalar = format!("{:?}", report.scalar).to_lowercase();

@@ -1,4 +1,4 @@
-//! The paper's table, with the start made visible.
+//! The paper's table, showing the effect of the filters' start.
 
 use kestirim_replay::robot::Trace;
 
@@ -17,13 +17,13 @@ fn limits(row: &Row) -> String {
     format!("{:.2}, calibrated {:.2}", row.limit_cm, row.limit_calibrated_cm)
 }
 
-/// Names and rows of the fifteen points and of their mean.
+/// The names and rows of the fifteen points and of their mean.
 fn rows(report: &Report) -> impl Iterator<Item = (String, &Row)> {
     let points = report.points.iter().enumerate().map(|(i, row)| (format!("P{}", i + 1), row));
     points.chain([("mean".to_owned(), &report.mean)])
 }
 
-/// Table 1, from an honest start.
+/// Table 1, with the filters started at the first trilateration.
 pub(super) fn table_1(report: &Report) -> Comparison {
     let table = Comparison::new(
         "robot-table-1",
@@ -48,7 +48,7 @@ pub(super) fn table_1(report: &Report) -> Comparison {
     )
 }
 
-/// Table 1, by the protocol that gives the published numbers.
+/// Table 1 by the protocol that reproduces the published numbers.
 pub(super) fn table_1_from_the_truth(report: &Report) -> Comparison {
     let table = Comparison::new(
         "robot-table-1-from-the-truth",
@@ -66,7 +66,7 @@ pub(super) fn table_1_from_the_truth(report: &Report) -> Comparison {
     )
 }
 
-/// The means of the table, start by start.
+/// The means of the table for each kind of start.
 pub(super) fn starts(report: &Report) -> Comparison {
     let Row { published, from_the_truth, honest_start, .. } = &report.mean;
     let row = &report.mean;
@@ -91,7 +91,7 @@ pub(super) fn starts(report: &Report) -> Comparison {
         )
 }
 
-/// The straight line.
+/// The table of the straight line.
 pub(super) fn line(report: &Report) -> Comparison {
     let line = &report.line;
     let cm = |value: f64| format!("{value:.1} cm");
@@ -116,7 +116,7 @@ pub(super) fn line(report: &Report) -> Comparison {
         .note("The paper prints no numbers of its line, only drawings.")
 }
 
-/// The round among people.
+/// The table of the round among people.
 pub(super) fn round(day: &Day) -> Comparison {
     let rmse = |traces: &[Trace]| {
         Accuracy::of_recording(&day.recording, traces).map(|accuracy| 100.0 * accuracy.rmse_m)
@@ -156,7 +156,7 @@ fn error(condition: impl Into<String>, method: &str) -> Value {
     Value::new("error of the mean of 50 positions", "cm").under(condition).by(method)
 }
 
-/// The paper's own methods at a point, of the numbers of which there is one a start.
+/// The results of the paper's own methods at a point, for one kind of start.
 fn repeated(
     (point, row): &(String, &Row),
     start: &str,
@@ -174,7 +174,7 @@ fn repeated(
     ]
 }
 
-/// The default at a point.
+/// The results of the default at a point.
 fn own(point: &str, row: &Row, trials: usize) -> [Value; 2] {
     [
         error(point, "default").is(row.ours_cm).limited(row.limit_cm),
@@ -185,7 +185,7 @@ fn own(point: &str, row: &Row, trials: usize) -> [Value; 2] {
     .map(|value| value.of(trials, None))
 }
 
-/// What matters most.
+/// The most important results.
 pub(super) fn headlines(report: &Report) -> Vec<Headline> {
     let row = &report.mean;
     let line = |quantity: &str| Headline {

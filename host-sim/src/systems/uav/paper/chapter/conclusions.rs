@@ -1,4 +1,4 @@
-//! What the thesis concludes, and what it did not ask.
+//! The conclusions of the thesis, and questions that it does not ask.
 
 use kestirim_replay::uav::{MIDDLE, Noise, Plant, faster};
 
@@ -15,7 +15,7 @@ use crate::systems::uav::simulate::design::{Family, Kind};
 use crate::systems::uav::simulate::plant::{Outputs, STATE_UNITS, STATES};
 use crate::systems::uav::simulate::scenario::Inputs;
 
-/// Claims, accuracies, limits.
+/// The items of claims, accuracies and limits.
 pub(super) fn items(report: &Report) -> Result<Vec<Item>, Error> {
     let flights = made(report, format!("{} flights a row", report.trials));
     let once = made(report, "1 flight a row, without noise");
@@ -74,7 +74,7 @@ fn accuracy(report: &Report) -> Comparison {
                 value.of(report.trials, None).limited(limit)
             });
             let values: Vec<_> = values.collect();
-            // The filter for the noise there is is ours, the rest is as the thesis has it.
+            // Our method is the filter for the actual noise; the others are as in the thesis.
             let (rmse, limit) = (four(row.rmse), four(row.predicted));
             let is_ours = row.family != Family::Luenberger && !row.estimator.contains("Q/R");
             let table = if is_ours {
@@ -127,7 +127,7 @@ fn independence(report: &Report) -> Comparison {
         ))
 }
 
-/// What speed costs: the middle poles made faster and slower, beside the steady-state filter.
+/// The cost of speed: the middle poles made faster and slower, compared with the steady-state filter.
 fn against_time() -> Result<Figure, Error> {
     let (plant, outputs, noise) = (Plant::P2, Outputs::Full, Noise::SENSORS);
     let (inputs, window) = (Inputs::Constant, Window::Settled);

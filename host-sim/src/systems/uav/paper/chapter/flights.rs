@@ -14,7 +14,7 @@ use crate::systems::uav::simulate::flight::{Flight, Moment};
 use crate::systems::uav::simulate::plant::{Outputs, STATES};
 use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR, SAMPLES, START};
 
-/// In the thesis' order.
+/// The items in the thesis' order.
 pub(super) fn items(report: &Report) -> Result<Vec<Item>, Error> {
     let once = made(report, "1 flight without noise");
     let noisy = made(report, "1 flight with σ = 0.01 on every input and output");
@@ -66,10 +66,10 @@ pub(super) fn items(report: &Report) -> Result<Vec<Item>, Error> {
     Ok(items)
 }
 
-/// An estimator of a drawing, and what it follows.
+/// An estimator in a figure: name, colour, kind, and the flight that it follows.
 type Drawn = (&'static str, Colour, Kind, Flight);
 
-/// The filter that explains the thesis' figures, a fast observer, and the filter that knows how wrong it is.
+/// The filter that explains the thesis' figures, a fast observer, and the filter that knows its initial uncertainty.
 fn under_noise(inputs: Inputs) -> [Drawn; 3] {
     let (noise, truth, start) = (Noise::EQUAL, START, NEAR);
     let (plant, outputs, samples) = (Plant::P2, Outputs::Full, SAMPLES);
@@ -81,12 +81,12 @@ fn under_noise(inputs: Inputs) -> [Drawn; 3] {
     ]
 }
 
-/// Sample times, s.
+/// The sample times (s).
 fn seconds(moments: &[Moment]) -> Vec<f64> {
     (0..moments.len()).map(|sample| sample as f64 * INTERVAL_S).collect()
 }
 
-/// Truth, measurements where they are noisy, and estimates: a figure a state.
+/// A figure per state with the truth, the measurements if they are noisy, and the estimates.
 fn drawn(
     report: &Report,
     all: &[Drawn],
@@ -124,7 +124,7 @@ fn runs<'a>(report: &Report, all: &'a [Drawn]) -> Result<Vec<(&'a Drawn, Vec<Mom
     all.iter().map(run).collect()
 }
 
-/// Fig. 6.27.
+/// Fig. 6.27: the errors under noise.
 fn errors(report: &Report, all: &[Drawn]) -> Result<[Figure; 4], Error> {
     let runs = runs(report, all)?;
     Ok(by_state(
@@ -177,7 +177,8 @@ fn caught(report: &Report) -> Comparison {
     ))
 }
 
-/// The worst state's error over its band: one line an estimator, caught where it stays below one.
+/// The worst state's error relative to its band: one line per estimator, which has caught the plant where it stays
+/// below one.
 fn falling(report: &Report) -> Result<Figure, Error> {
     let kinds = [
         Kind::Ratio(1e-2),

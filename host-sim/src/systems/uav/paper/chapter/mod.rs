@@ -1,4 +1,4 @@
-//! The UAV's part of the report: the thesis' chapters 3, 5 and 6 in their order, then what it does not ask.
+//! The UAV's part of the report: the thesis' chapters 3, 5 and 6 in their order, followed by what goes beyond them.
 
 mod conclusions;
 mod flights;
@@ -14,10 +14,10 @@ use crate::systems::uav::Uav;
 use crate::systems::uav::paper::report::Report;
 use crate::systems::uav::simulate::plant::{STATE_NAMES, STATE_SLUGS, STATE_UNITS, STATES};
 
-/// The whole chapter.
+/// The complete chapter.
 ///
 /// # Errors
-/// If an estimator of its drawings does not exist in the scalar of the report.
+/// If an estimator of a figure does not exist in the report's number type.
 pub fn chapter(report: &Report) -> Result<Chapter, Error> {
     let mut items = plants::items(report);
     items.extend(flights::items(report)?);
@@ -39,7 +39,7 @@ pub fn chapter(report: &Report) -> Result<Chapter, Error> {
     })
 }
 
-/// How the tables of the command came about; of so many of something.
+/// How the tables of the command were made, with the number of trials.
 fn made(report: &Report, trials: impl Into<String>) -> Made {
     let Report { seed, trials: flights, .. } = report;
     let scalar = format!("{:?}", report.scalar).to_lowercase();
@@ -52,7 +52,7 @@ fn made(report: &Report, trials: impl Into<String>) -> Made {
     }
 }
 
-/// A figure a state over time, numbered, with what is drawn of it.
+/// A numbered figure over time for each state, with contents from `draw`.
 fn by_state(
     id: &str,
     title: &str,

@@ -1,4 +1,4 @@
-//! Chapters 3 and 5 of the thesis: the trim, and what the plant does by itself.
+//! Chapters 3 and 5 of the thesis: the trim, and the response of the plant without an estimator.
 
 use kestirim_replay::uav::{Model, Plant};
 
@@ -10,13 +10,13 @@ use crate::systems::uav::paper::report::{Report, said_of_constant_inputs};
 use crate::systems::uav::paper::responses::{Bode, Responses};
 use crate::systems::uav::simulate::plant::STATES;
 
-/// What drives the plant, and how much of it the drawings take for one: a degree of elevator, a tenth of the throttle.
+/// The inputs, with the unit of each in the figures: a degree of elevator, a tenth of the throttle.
 const DRIVES: [(&str, f64, Colour); 2] = [
     ("1° of elevator", std::f64::consts::PI / 180.0, Colour::Other(0)),
     ("10 % of throttle", 0.1, Colour::Other(1)),
 ];
 
-/// In the thesis' order.
+/// The items in the thesis' order.
 pub(super) fn items(report: &Report) -> Vec<Item> {
     let once = made(report, "none: nothing is random");
     let mut items = vec![once.item(trim()), once.item(visibility(report))];
@@ -99,7 +99,7 @@ fn visibility(report: &Report) -> Comparison {
         )
 }
 
-/// A figure a state, both inputs in each.
+/// A figure per state with the responses to both inputs.
 fn driven(
     plant: &Responses,
     response: &[Vec<[f64; 4]>; 2],
@@ -137,7 +137,7 @@ fn settling(report: &Report) -> Comparison {
     })
 }
 
-/// Fig. 5.3: a gain and a phase an input.
+/// Fig. 5.3: a gain and a phase diagram for each input.
 fn bode(plant: &Responses) -> [Figure; 4] {
     let omegas: Vec<f64> = plant.bode.iter().map(|point| point.omega).collect();
     let of = |of: &dyn Fn(&Bode, usize) -> f64, state: usize| -> Vec<f64> {
@@ -171,7 +171,7 @@ fn bode(plant: &Responses) -> [Figure; 4] {
     })
 }
 
-/// Degrees without jumps of a whole turn.
+/// Phases in degrees, without jumps of 360°.
 fn unwrapped(phases: &[f64]) -> Vec<f64> {
     let mut before = phases.first().map_or(0.0, |phase| phase.to_degrees());
     phases
@@ -184,7 +184,7 @@ fn unwrapped(phases: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Fig. 5.4, of all aircraft.
+/// Fig. 5.4: the singular values of all aircraft.
 fn singular_values(plants: &[Responses]) -> Figure {
     let mut figure = Figure::new("uav-fig-5-4", "Fig. 5.4, largest and smallest singular value")
         .axes("ω, rad/s", "gain over all directions of the input")
@@ -196,7 +196,7 @@ fn singular_values(plants: &[Responses]) -> Figure {
             plant.bode.iter().map(move |point| [point.omega, point.singular_values[place]])
         };
         let mut largest: Vec<_> = of(0).collect();
-        // The resonance is narrower than the frequencies are apart.
+        // The resonance is narrower than the spacing of the frequencies.
         largest.push([plant.peak.omega, plant.peak.gain]);
         largest.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let (name, colour) = (plant.plant.name(), Colour::Other(number));
@@ -208,7 +208,7 @@ fn singular_values(plants: &[Responses]) -> Figure {
     figure
 }
 
-/// Figs 5.5 to 5.8.
+/// Figs 5.5 to 5.8: the responses to constant inputs.
 fn constant_inputs(plant: &Responses) -> [Figure; 4] {
     let column = |place: usize| plant.constant_inputs.iter().map(|row| row[place]).collect();
     by_state(
@@ -225,7 +225,7 @@ fn said(report: &Report) -> Comparison {
     said_of_constant_inputs(&report.plants).into_iter().fold(
         empty,
         |table, [quantity, published, here]| {
-            // The unit stands in the name, behind the comma, where there is one.
+            // The name contains the unit after the comma, if there is one.
             let unit =
                 ["rad", "m/s"].into_iter().find(|unit| quantity.contains(&format!(", {unit}")));
             let value = Value::new(quantity.clone(), unit.unwrap_or("s")).by("model");

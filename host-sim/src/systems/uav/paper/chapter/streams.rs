@@ -1,4 +1,4 @@
-//! A typical run for other programs: P2 under the noise of real sensors.
+//! The streams of a typical run: P2 under the noise of real sensors.
 
 use kestirim_replay::uav::{MIDDLE, Noise, Plant};
 
@@ -10,7 +10,7 @@ use crate::systems::uav::simulate::flight::{Flight, Moment};
 use crate::systems::uav::simulate::plant::{Outputs, STREAM_COLUMNS};
 use crate::systems::uav::simulate::scenario::{INTERVAL_S, Inputs, NEAR, SAMPLES, START};
 
-/// Inputs, measurements, truth, and what both estimators make of them.
+/// The inputs, the measurements, the truth, and the estimates of both estimators.
 pub(super) fn streams(report: &Report) -> Result<Vec<Stream>, Error> {
     let flight = Flight {
         plant: Plant::P2,
@@ -33,7 +33,7 @@ pub(super) fn streams(report: &Report) -> Result<Vec<Stream>, Error> {
         stream("/uav/inputs", &["delta_e_rad", "delta_t"], &filter, |m| {
             m.sample.u.as_slice().into()
         }),
-        // α has no sensor here.
+        // There is no sensor for α here.
         stream("/uav/sensors", &columns[1..], &filter, |m| m.sample.y.as_slice()[1..].into()),
         stream("/uav/truth", columns, &filter, |m| m.sample.x.as_slice().into()),
         stream("/uav/estimate", columns, &filter, |m| m.estimate.as_slice().into()),

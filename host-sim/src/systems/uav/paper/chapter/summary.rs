@@ -1,4 +1,4 @@
-//! The few numbers that matter most.
+//! The few most important numbers.
 
 use kestirim_replay::uav::{Noise, Plant};
 
@@ -11,7 +11,7 @@ use crate::systems::uav::paper::report::Report;
 use crate::systems::uav::simulate::design::Family;
 use crate::systems::uav::simulate::plant::Outputs;
 
-/// What the first page says: how soon, and how well.
+/// The headlines of the first page: the times to catch, and the accuracy.
 pub(super) fn headlines(report: &Report) -> Vec<Headline> {
     let caught = report.catching.iter().filter(|row| row.published.is_some()).map(|row| Headline {
         quantity: format!(
@@ -46,7 +46,7 @@ pub(super) fn headlines(report: &Report) -> Vec<Headline> {
     caught.chain([error]).collect()
 }
 
-/// Times to catch, claims, and how honest the errors are.
+/// The times to catch, the claims, and the consistency of the errors with their predictions.
 pub(super) fn summary(report: &Report) -> Comparison {
     let mut table = Comparison::new("uav-summary", "UAV: states α, q, V, θ of the aircraft P2");
     if let Some(plant) = report.plants.iter().find(|row| row.plant == Plant::P2) {
