@@ -1,4 +1,5 @@
-"""Dask: `pip install distributed`, then `python sweep.py PLAN.toml ROWS [SCHEDULER]`, as often as it takes."""
+"""Dask: `pip install distributed`, then `python sweep.py PLAN.toml ROWS [SCHEDULER]`, repeated until no shard
+is missing."""
 import subprocess
 import sys
 import tomllib

@@ -1,4 +1,4 @@
-//! The hal's linker script for images in flash, and the one that collects defmt's format strings.
+//! Passes linker scripts: the HAL's for images in flash, and the one that collects defmt's format strings.
 
 fn main() {
     println!("cargo::rustc-link-arg-bins=-Tdefmt.x");

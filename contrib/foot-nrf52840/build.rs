@@ -1,4 +1,4 @@
-//! Tells the linker where the memory is, and of the scripts of run-time and log.
+//! Passes the memory layout and the linker scripts of the run-time and of defmt to the linker.
 
 fn main() {
     println!("cargo::rustc-link-search={}", env!("CARGO_MANIFEST_DIR"));

@@ -15,7 +15,8 @@ static void varint(uint64_t value) {
     byte(value);
 }
 
-// Checksum and COBS: each stretch without a zero behind its length and one. How long the frame is.
+// Appends the checksum and encodes with COBS: each run without a zero is preceded by its length plus one. Returns the
+// length of the frame.
 static size_t framed(void) {
     uint32_t crc = ~0u;
     for (size_t i = 0; i < length; i++) {

@@ -3,7 +3,7 @@ import math, socket, struct, sys, zlib
 
 
 def varint(number):
-    """Seven bits a byte, the lowest first."""
+    """Encodes a number with seven bits per byte, the lowest first."""
     digits = bytearray()
     while number > 127:
         digits.append(number & 127 | 128)
@@ -22,7 +22,7 @@ def anchors_range(time_us, anchor, metres):
 def frame(number, message):
     body = b"\x01" + struct.pack("<H", number % 65536) + message
     body += struct.pack("<I", zlib.crc32(body))
-    # COBS: each stretch without a zero behind its length and one.
+    # COBS: each run without a zero is preceded by its length plus one.
     return b"\0" + b"".join(bytes([len(part) + 1]) + part for part in body.split(b"\0")) + b"\0"
 
 

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Slurm: sbatch sweep.sh PLAN.toml ROWS. --array counts the plan's shards; --requeue does again what a node took with it.
-# A shard that is there is not done again, so the whole array may be submitted twice; at last: host-sim merge ROWS.
+# Slurm: sbatch sweep.sh PLAN.toml ROWS. --array counts the plan's shards; --requeue repeats the tasks of a failed node.
+# Finished shards are skipped, so the whole array may be submitted again. Finally: host-sim merge ROWS.
 #SBATCH --array=0-13
 #SBATCH --cpus-per-task=1
 #SBATCH --requeue

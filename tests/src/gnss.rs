@@ -1,11 +1,11 @@
-//! Recorded GNSS observations with truth, from `../shared/data/gnss` beside the repository.
+//! Recorded GNSS observations with ground truth, from `../shared/data/gnss` beside the repository.
 
 use std::path::Path;
 
 use host_sim::system::Files;
 use host_sim::systems::gnss::recording;
 use kestirim_gnss_ppp::{Corrections, sagnac};
-use kestirim_ppp_filter::{Config, PppFilter, SatelliteObservation};
+use kestirim_ppp_filter::{Config, PppFilter, SatelliteObservation, Solution};
 use kestirim_replay::gnss::{Accuracy, Fix, Recording, STATES_WITH_GALILEO};
 use nalgebra::Vector3;
 
@@ -18,9 +18,9 @@ pub struct Station {
     clocks: &'static [&'static str],
     antennas: &'static [&'static str],
     ocean_loading: Option<&'static str>,
-    /// The marker's true place, ECEF, m.
+    /// The true position of the marker, ECEF, m.
     pub truth: [f64; 3],
-    /// Up to when there are orbits, s of the day.
+    /// The end of the orbits, s of the day.
     pub until: f64,
 }
 
@@ -35,11 +35,11 @@ pub const ESBC: Station = Station {
     until: 85_500.0,
 };
 
-/// The same with injected faults.
+/// [`ESBC`] with injected faults.
 pub const ESBC_INJECTED: Station =
     Station { observations: "esbc2020177_injected/esbc_gps_CPSB0.rnx.gz", ..ESBC };
 
-/// The same day with Galileo.
+/// The day of [`ESBC`] with Galileo.
 pub const ESBC_MULTI: Station = Station {
     observations: "esbc2020177_multi/ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz",
     orbits: &[
@@ -66,7 +66,7 @@ pub const ACOR: Station = Station {
     until: 86_400.0,
 };
 
-/// Toulouse, the same day.
+/// Toulouse, 27 May 2008: the day of [`ACOR`].
 pub const TLSE: Station = Station {
     observations: "igs2008148/tlse_gps.rnx.gz",
     truth: [4_627_851.794_6, 119_640.086_8, 4_372_993.591_7],
@@ -74,13 +74,13 @@ pub const TLSE: Station = Station {
 };
 
 impl Station {
-    /// The same day with observations of another file: below the folder, or a whole path.
+    /// This day with observations from another file: a path below the folder, or a complete path.
     #[must_use]
     pub const fn observed_in(self, observations: &'static str) -> Self {
         Self { observations, ..self }
     }
 
-    /// Reads its files.
+    /// Reads the files of the day.
     ///
     /// # Panics
     /// A file cannot be read: those beside the repository can.
@@ -90,7 +90,7 @@ impl Station {
         recording::read(&files).expect("files that can be read")
     }
 
-    /// Its files but for the observations.
+    /// The files of the day except the observations.
     pub fn products(&self, folder: &Path) -> Files {
         let mut files = Files::default();
         for (field, names) in [
@@ -106,20 +106,36 @@ impl Station {
         files
     }
 
-    /// Follows a receiver that is `away(t)` (ECEF, m) from the marker at second t of the day, and whose other
-    /// faults `spoil` adds.
+    /// Tracks a receiver that is `away(t)` (ECEF, m) from the marker at second t of the day; `spoil` adds further
+    /// faults.
     pub fn follow(
         &self,
         recording: &Recording,
         config: Config,
         corrections: Corrections,
         away: impl Fn(f64) -> Vector3<f64>,
-        mut spoil: impl FnMut(f64, &mut SatelliteObservation<'_>),
+        spoil: impl FnMut(f64, &mut SatelliteObservation<'_>),
     ) -> Vec<Fix> {
+        let mut fixes = Vec::new();
+        self.solve(recording, config, corrections, away, spoil, |t, solution| {
+            fixes.push(Fix { t, position: solution.position });
+        });
+        fixes
+    }
+
+    /// Like [`follow`](Self::follow), with each solution given to `found` together with its second of the day.
+    pub fn solve(
+        &self,
+        recording: &Recording,
+        config: Config,
+        corrections: Corrections,
+        away: impl Fn(f64) -> Vector3<f64>,
+        mut spoil: impl FnMut(f64, &mut SatelliteObservation<'_>),
+        mut found: impl FnMut(f64, &Solution<STATES_WITH_GALILEO>),
+    ) {
         let receiver = recording.receiver(corrections);
         let marker = Vector3::from(self.truth);
         let mut filter = PppFilter::<STATES_WITH_GALILEO>::new(config);
-        let mut fixes = Vec::new();
         for epoch in recording.epochs(Some(self.until)) {
             let t = recording.seconds(epoch);
             let known = |observed| recording.products().observation(epoch.time, observed).ok();
@@ -129,13 +145,12 @@ impl Station {
                 spoil(t, observation);
             }
             if let Ok(solution) = filter.process(epoch.time, &receiver, &observations) {
-                fixes.push(Fix { t, position: solution.position });
+                found(t, &solution);
             }
         }
-        fixes
     }
 
-    /// The paper's measures of a day with one configuration.
+    /// The paper's accuracy measures of a day with one configuration.
     ///
     /// # Panics
     /// No epoch has a solution.
@@ -145,7 +160,7 @@ impl Station {
         self.compare(&fixes)
     }
 
-    /// Positions against the truth.
+    /// Compares positions with the truth.
     ///
     /// # Panics
     /// There are none.
@@ -154,7 +169,7 @@ impl Station {
     }
 }
 
-/// Adds to a satellite's codes and phases, m.
+/// Adds offsets to a satellite's codes and phases, m.
 pub fn lengthen(observation: &mut SatelliteObservation<'_>, code: f64, phase: f64) {
     for carrier in 0..2 {
         observation.code[carrier] += code;
@@ -162,7 +177,7 @@ pub fn lengthen(observation: &mut SatelliteObservation<'_>, code: f64, phase: f6
     }
 }
 
-/// What the receiver would have observed elsewhere.
+/// Changes an observation to what the receiver would have observed elsewhere.
 fn move_receiver(
     observation: &mut SatelliteObservation<'_>,
     from: &Vector3<f64>,

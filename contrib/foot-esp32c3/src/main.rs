@@ -1,4 +1,5 @@
-//! The foot on an ESP32-C3: SDA at pin 4, SCL at pin 5. The sensor is asked every 10 ms: Wokwi's has no interrupt.
+//! The foot's tracker on an ESP32-C3, with SDA at GPIO 4 and SCL at GPIO 5. The sensor is polled every 10 ms, because
+//! Wokwi's model of it has no interrupt.
 #![no_std]
 #![no_main]
 
@@ -20,11 +21,11 @@ fn main() -> ! {
     software_reset()
 }
 
-/// The sensor's samples a second: what is asked for every 10 ms is at most 1 ms old.
+/// The sensor's sample rate, Hz: a sample that is read every 10 ms is then at most 1 ms old.
 const RATE: u32 = 1000;
 const PERIOD: Duration = Duration::from_millis(10);
 
-/// Tracks for as long as there is a sensor.
+/// Tracks the foot until the sensor or its bus fails.
 async fn walk() {
     let board = esp_hal::init(esp_hal::Config::default());
     let Ok(bus) = I2c::new(board.I2C0, Config::default().with_frequency(Rate::from_khz(400)))
@@ -47,7 +48,7 @@ async fn walk() {
             Err(refused @ Error::Refused(_)) => println!("{refused:?}"),
             Err(error) => return println!("{error:?}"),
         }
-        // What a slow line cost is not caught up with.
+        // After a delay by a slow serial line, missed samples are not made up for.
         due = (due + PERIOD).max(Instant::now());
     }
 }

@@ -1,5 +1,5 @@
-//! The foot on an nRF52840-DK: SDA at P0.26, SCL at P0.27, the sensor's interrupt at P1.01. The processor sleeps until a
-//! sample is ready, and while DMA fetches it.
+//! The foot's tracker on an nRF52840-DK, with SDA at P0.26, SCL at P0.27 and the sensor's interrupt at P1.01. The
+//! processor sleeps until a sample is ready, and while DMA reads it.
 #![no_std]
 #![no_main]
 
@@ -16,11 +16,11 @@ bind_interrupts!(struct Interrupts {
     TWISPI0 => twim::InterruptHandler<peripherals::TWISPI0>;
 });
 
-/// Samples a second.
+/// The sensor's sample rate, Hz.
 const RATE: u32 = 100;
-/// An MPU-6050 answers so long after it was switched on (its data sheet).
+/// The time after power-on until an MPU-6050 responds (its data sheet).
 const START: Duration = Duration::from_millis(100);
-/// So long without a sample, it has lost its settings.
+/// The time without a sample after which the sensor is assumed to have lost its settings.
 const PATIENCE: Duration = Duration::from_millis(200);
 
 #[embassy_executor::main]
@@ -28,7 +28,7 @@ async fn main(_spawner: Spawner) {
     let board = embassy_nrf::init(embassy_nrf::config::Config::default());
     let mut config = twim::Config::default();
     config.frequency = twim::Frequency::K400;
-    // DMA reads no flash: constants are copied here.
+    // DMA cannot read flash: constants are copied into this buffer.
     let mut copies = [0; 16];
     let mut bus =
         Twim::new(board.TWISPI0, Interrupts, board.P0_26, board.P0_27, config, &mut copies);
@@ -41,7 +41,7 @@ async fn main(_spawner: Spawner) {
     }
 }
 
-/// Tracks until the sensor is silent or its bus fails.
+/// Tracks the foot until the sensor is silent or its bus fails.
 async fn walk(bus: &mut Twim<'_>, ready: &mut Input<'_>) -> Result<(), Error<twim::Error>> {
     let mut foot = Foot::new(bus, RATE).await?;
     defmt::info!("walk");

@@ -1,5 +1,5 @@
-//! A foot-mounted MPU-6050 and its tracker, for any board with async I²C: a board's program waits for the sensor's
-//! interrupt and calls [`Foot::step`].
+//! A foot-mounted MPU-6050 and its tracker, for any board with async I²C: the board's program calls [`Foot::step`] for
+//! each sample, for example at the sensor's interrupt.
 #![no_std]
 
 mod mpu6050;
@@ -14,25 +14,25 @@ use mpu6050::Mpu6050;
 
 pub use mpu6050::Error;
 
-/// The tracker's number: for a processor without a floating-point unit, fixed point.
+/// The number type of the tracker: fixed point, for a processor without a floating-point unit.
 #[cfg(feature = "fixed")]
 pub type Number = kestirim_scalar::Q12_20;
-/// The tracker's number: for a processor with a floating-point unit, single precision.
+/// The number type of the tracker: single precision, for a processor with a floating-point unit.
 #[cfg(not(feature = "fixed"))]
 pub type Number = f32;
 
-/// Where the foot stood after a stride.
+/// The place where the foot stood at the end of a stride.
 #[derive(Clone, Copy, Debug, PartialEq, defmt::Format)]
 pub struct Footprint {
-    /// m, from the start: x as the sensor's x axis pointed there, y to its left.
+    /// The place relative to the start, m: x in the direction of the sensor's x axis at the start, y to the left of it.
     pub place: [f32; 2],
-    /// Standard deviations of that, m.
+    /// Standard deviations of the place, m.
     pub sigma: [f32; 2],
     /// Whether the path can be relied upon, and why not.
     pub health: Health,
 }
 
-/// The foot: its sensor, and the path it walks.
+/// A foot with its sensor, and the tracker of its path.
 pub struct Foot<B> {
     imu: Mpu6050<B>,
     tracker: EkfTracker<Number>,
@@ -40,22 +40,24 @@ pub struct Foot<B> {
 }
 
 impl<B: I2c> Foot<B> {
-    /// Sets the sensor up: 16 g, 2000 °/s, so many samples a second (4 to 1000), an interrupt for each. A program that asks
-    /// at times of its own lets it sample ten times as often, so that what it gets is new.
+    /// Sets the sensor up for ±16 g and ±2000 °/s, with `rate` samples per second (4 to 1000) and an interrupt for
+    /// each. A program that reads without the interrupt chooses a rate ten times its own, so that every reading is
+    /// fresh.
     ///
     /// # Errors
-    /// The bus's, or [`Error::NotThere`].
+    /// [`Error::Bus`] or [`Error::NotThere`].
     pub async fn new(bus: B, rate: u32) -> Result<Self, Error<B::Error>> {
         let (sensor, imu) = (SensorClass::Consumer, Mpu6050::new(bus, rate).await?);
         let tracker = EkfTracker::new(Config { sensor, ..Config::default() });
         Ok(Self { imu, tracker, uncertainty: PathUncertainty::new(sensor) })
     }
 
-    /// Takes the sample that was ready at `time_us` (µs, any clock that does not go backwards); a footprint if it ended a
-    /// stride.
+    /// Reads and processes the sample that was ready at `time_us` (µs on any clock that does not go backwards). Returns
+    /// a footprint if the sample completed a stride.
     ///
     /// # Errors
-    /// The bus's, or [`Error::Refused`]. The tracker is as it was, and the next sample may be taken.
+    /// [`Error::Bus`], [`Error::NotThere`] or [`Error::Refused`]. The tracker is unchanged, and the next sample may be
+    /// processed.
     pub async fn step(&mut self, time_us: u64) -> Result<Option<Footprint>, Error<B::Error>> {
         let (specific_force, angular_rate) = self.imu.read().await?;
         let sample = ImuSample {

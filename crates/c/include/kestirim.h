@@ -1,17 +1,19 @@
 // Kestirim: estimators for localisation, for C and C++.
 //
-// Objects stand in memory of the caller's: of at least kestirim_SYSTEM_size() bytes (KESTIRIM_SYSTEM_SIZE at most, for
-// static memory), aligned as a double or an int64_t is. kestirim_SYSTEM_init() answers with a handle into it; nothing is
-// allocated, nothing is global, and nothing need be freed. Do not copy or move the memory, and do not write into it.
+// Objects are in memory that the caller provides: at least kestirim_SYSTEM_size() bytes (at most KESTIRIM_SYSTEM_SIZE,
+// for static memory), aligned like a double or an int64_t. kestirim_SYSTEM_init() returns a handle into this memory.
+// Nothing is allocated, nothing is global, and nothing has to be freed. Do not copy or move the memory, and do not
+// write into it.
 //
-// Pointers are checked: null, wrongly aligned, too little memory, and memory that holds no such object are told by a
-// kestirim_status. What nobody can check the caller keeps: memory is his own and as large as he says; arrays hold as many
-// as he says; and no two calls use one object at the same time (in an interrupt, in another thread). Calls with different
-// objects may. A call that fails has changed nothing and written no answer.
+// Pointers are checked: a kestirim_status reports a null or misaligned pointer, too little memory, and memory that
+// holds no object of the expected type. What cannot be checked is up to the caller: memory belongs to the caller and is
+// as large as stated; arrays have as many elements as stated; and no two calls use the same object at the same time (in
+// an interrupt or in another thread), whereas calls with different objects may. A call that fails changes nothing and
+// writes no result.
 //
-// Units are SI: m, s, rad, unless a field says otherwise. Time is integer microseconds of one clock. Frames are named
-// where they matter. Numbers are `float` whatever the library computes with (`float`, or fixed point if it was built with
-// the feature `fixed`, for processors without a floating-point unit); GNSS and aircraft models take `double`.
+// Units are SI (m, s, rad) unless a field states otherwise. Times are integer microseconds of one clock. Frames are
+// named where they matter. Numbers are `float` whatever the library computes with: `float`, or fixed point if it was
+// built with the feature `fixed`, for processors without a floating-point unit. GNSS and aircraft models use `double`.
 
 
 #ifndef KESTIRIM_H
@@ -22,106 +24,120 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// Most corners of an area.
+// Largest number of corners of a search area.
 #define KESTIRIM_MOST_CORNERS 16
 
-// Bytes that a search takes at most, on any target.
+// Upper bound of the size of a transmitter search on any target, bytes: for static memory.
 #define KESTIRIM_DRONE_SIZE 1024
 
-// Bytes that a snapshot takes at most, on any target.
+// Upper bound of the size of a transmitter search's snapshot on any target, bytes.
 #define KESTIRIM_DRONE_SNAPSHOT (((KESTIRIM_DRONE_SIZE / 4) * 5) + 64)
 
-// Most satellites of an epoch.
+// Largest number of satellites in an epoch.
 #define KESTIRIM_MOST_SATELLITES 12
 
-// Bytes that a filter takes at most, on any target.
+// Upper bound of the size of a GNSS filter on any target, bytes: for static memory.
 #define KESTIRIM_GNSS_SIZE 10240
 
-// Bytes that a snapshot takes at most, on any target.
+// Upper bound of the size of a GNSS filter's snapshot on any target, bytes.
 #define KESTIRIM_GNSS_SNAPSHOT (((KESTIRIM_GNSS_SIZE / 4) * 5) + 64)
 
-// Most samples of an orbit or a clock: four hours of an orbit every quarter of an hour.
+// Largest number of satellites whose ephemerides are kept, of all systems together. A further one is left out until
+// another has not been heard for five minutes.
+#define KESTIRIM_MOST_BROADCAST 40
+
+// Upper bound of the size of an ephemeris collection on any target, bytes: for static memory.
+#define KESTIRIM_GNSS_BROADCAST_SIZE 16384
+
+// Largest number of samples of an orbit or a clock: four hours of an orbit with a sample every quarter of an hour.
 #define KESTIRIM_MOST_PRODUCTS 16
 
-// Bytes that a pedestrian's tracker takes at most, on any target: for memory that is set aside by the compiler.
+// Upper bound of the size of a pedestrian tracker on any target, bytes: for static memory.
 #define KESTIRIM_PEDESTRIAN_SIZE 2048
 
-// Bytes that a snapshot takes at most, on any target.
+// Upper bound of the size of a pedestrian tracker's snapshot on any target, bytes.
 #define KESTIRIM_PEDESTRIAN_SNAPSHOT (((KESTIRIM_PEDESTRIAN_SIZE / 4) * 5) + 64)
 
-// Most anchors of a tracker.
+// Largest number of anchors of a tag tracker.
 #define KESTIRIM_MOST_ANCHORS 8
 
-// Bytes that a tracker takes at most, on any target.
+// Upper bound of the size of a tag tracker on any target, bytes: for static memory.
 #define KESTIRIM_ROBOT_SIZE 1536
 
-// Bytes that a snapshot takes at most, on any target.
+// Upper bound of the size of a tag tracker's snapshot on any target, bytes.
 #define KESTIRIM_ROBOT_SNAPSHOT (((KESTIRIM_ROBOT_SIZE / 4) * 5) + 64)
 
-// Outputs of a filter.
+// Number of measured outputs of a flight filter.
 #define KESTIRIM_UAV_OUTPUTS 3
 
-// Bytes that a filter takes at most, on any target.
+// Upper bound of the size of a flight filter on any target, bytes: for static memory.
 #define KESTIRIM_UAV_SIZE 2048
 
-// Bytes that a snapshot takes at most, on any target.
+// Upper bound of the size of a flight filter's snapshot on any target, bytes.
 #define KESTIRIM_UAV_SNAPSHOT (((KESTIRIM_UAV_SIZE / 4) * 5) + 64)
 
-// Bytes that a tracker takes at most, on any target.
+// Upper bound of the size of a wheel tracker on any target, bytes: for static memory.
 #define KESTIRIM_WHEELS_SIZE 2048
 
-// Bytes that a snapshot takes at most, on any target.
+// Upper bound of the size of a wheel tracker's snapshot on any target, bytes.
 #define KESTIRIM_WHEELS_SNAPSHOT (((KESTIRIM_WHEELS_SIZE / 4) * 5) + 64)
 
-// Outcome of a call. If it is not `KESTIRIM_STATUS_OK`, nothing was changed, and no answer was written.
+// Outcome of a call. If it is not `KESTIRIM_STATUS_OK`, nothing was changed and no result was written.
 enum kestirim_status
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : int32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // Done.
+  // The call succeeded.
   KESTIRIM_STATUS_OK = 0,
   // A pointer is null.
   KESTIRIM_STATUS_NULL_POINTER = 1,
-  // A pointer is not aligned as its type wants it.
+  // A pointer is not aligned for its type.
   KESTIRIM_STATUS_MISALIGNED = 2,
-  // The memory is smaller than the object.
+  // The memory is too small for the object, or the buffer for the snapshot.
   KESTIRIM_STATUS_TOO_SMALL = 3,
-  // The memory holds no object of this type: it was not initialised, or overwritten.
+  // The memory holds no object of this type: it was never initialised, or has been overwritten.
   KESTIRIM_STATUS_NOT_INITIALISED = 4,
-  // A choice is none of those that there are, or a setting is out of its range.
+  // An enumerated argument has an unknown value, or a setting or a number is out of its range.
   KESTIRIM_STATUS_INVALID_ARGUMENT = 5,
-  // There is no estimate: none yet, or it was lost.
+  // There is no estimate yet, or it was lost.
   KESTIRIM_STATUS_NO_ESTIMATE = 6,
-  // A number is NaN, infinite, or beyond what fixed point holds.
+  // A number is NaN, infinite, or out of the range of the fixed-point format.
   KESTIRIM_STATUS_NOT_FINITE = 7,
-  // No sensor can have measured this.
+  // A measurement has a value that no sensor can have measured.
   KESTIRIM_STATUS_IMPLAUSIBLE = 8,
-  // The time is before that of the last sample.
+  // The sample is not later than the last one, or is too old for the estimate.
   KESTIRIM_STATUS_OUT_OF_ORDER = 9,
-  // The same measurement came before.
+  // The measurement was already processed.
   KESTIRIM_STATUS_DUPLICATE = 10,
   // No anchor has this number.
   KESTIRIM_STATUS_NO_SUCH_ANCHOR = 11,
-  // More anchors, corners, satellites or samples than there is room for.
+  // There are more anchors, corners, satellites or samples than there is room for.
   KESTIRIM_STATUS_TOO_MANY = 12,
-  // Fewer than are needed: anchors, satellites, corners.
+  // There are fewer anchors, satellites or words of a navigation message than are needed.
   KESTIRIM_STATUS_TOO_FEW = 13,
-  // The measurements contradict each other, or nothing explains them.
+  // The measurements contradict each other, or no position explains them.
   KESTIRIM_STATUS_CONTRADICTORY = 14,
-  // The time since the last sample is too long for the estimate to be carried over it, or no multiple of the model's
-  // interval.
+  // The time since the last sample is too long to predict the estimate over it, or is not a multiple of the model's
+  // interval; or no ephemeris or product covers the time.
   KESTIRIM_STATUS_GAP = 15,
-  // The geometry determines no position, the corners enclose nothing, or a matrix has no inverse.
+  // The geometry determines no position, the corners enclose no area, or a matrix is singular.
   KESTIRIM_STATUS_GEOMETRY = 16,
   // The estimator refused the step for another reason.
   KESTIRIM_STATUS_REFUSED = 17,
-  // The bytes are no snapshot of an object.
+  // The bytes are not a snapshot.
   KESTIRIM_STATUS_NO_SNAPSHOT = 18,
-  // A snapshot of another object, of another version of this library, or of other numbers (`float` or fixed point).
+  // The snapshot is of another type of object, another version of this library, or another number format (`float` or
+  // fixed point).
   KESTIRIM_STATUS_FOREIGN_SNAPSHOT = 19,
-  // A snapshot that was not written whole, or was changed.
+  // The snapshot was not written completely, or has been altered.
   KESTIRIM_STATUS_DAMAGED_SNAPSHOT = 20,
+  // The checksum of the navigation message is wrong, or the message is of another kind.
+  KESTIRIM_STATUS_DAMAGED_MESSAGE = 21,
+  // The satellite declares its signals unhealthy, or predicts no accuracy.
+  KESTIRIM_STATUS_UNHEALTHY = 22,
+  // The satellite does not broadcast the group delay for the observed carriers.
+  KESTIRIM_STATUS_NO_GROUP_DELAY = 23,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -131,17 +147,17 @@ typedef int32_t kestirim_status;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// How far an estimate can be relied upon.
+// Degree to which an estimate can be relied upon.
 enum kestirim_state
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // As its standard deviation says.
+  // The estimate is as good as its standard deviation says.
   KESTIRIM_STATE_GOOD = 0,
-  // Worse than with better data; what is said of its accuracy still holds, more or less.
+  // The estimate is worse than with better data; its stated accuracy still holds approximately.
   KESTIRIM_STATE_DEGRADED = 1,
-  // It may be wrong by far more than anything says: not to be relied upon.
+  // The estimate may be wrong by far more than its stated accuracy: do not rely on it.
   KESTIRIM_STATE_BAD = 2,
 };
 #ifndef __cplusplus
@@ -152,23 +168,23 @@ typedef uint32_t kestirim_state;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Outcome of a range.
+// What a tracker did with a range.
 enum kestirim_range_outcome
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // Kept for a first position, for which more are needed.
+  // The range is stored for a first position, which needs more ranges or is still being searched for.
   KESTIRIM_RANGE_OUTCOME_COLLECTED = 0,
-  // It made a first position possible, or a new one after the tracker was lost.
+  // With this range a first position was found, or a new one after the tracker was lost.
   KESTIRIM_RANGE_OUTCOME_STARTED = 1,
-  // Taken in with its full weight.
+  // The range was used with its full weight.
   KESTIRIM_RANGE_OUTCOME_TAKEN = 2,
-  // Taken in with less weight: it is longer or shorter than expected.
+  // The range was used with a reduced weight: it is longer or shorter than expected.
   KESTIRIM_RANGE_OUTCOME_WEAKENED = 3,
-  // Left out.
+  // The range was rejected.
   KESTIRIM_RANGE_OUTCOME_REJECTED = 4,
-  // Taken in although it does not fit: too many had been left out.
+  // The range was used although it does not fit: too many had been rejected.
   KESTIRIM_RANGE_OUTCOME_RECOVERED = 5,
 };
 #ifndef __cplusplus
@@ -187,11 +203,12 @@ enum kestirim_tag_state
  {
   // No position has been found yet.
   KESTIRIM_TAG_STATE_INITIALISING = 0,
-  // Ranges come in and fit.
+  // Ranges arrive and are consistent.
   KESTIRIM_TAG_STATE_TRACKING = 1,
-  // No range came for a second or two rounds of the anchors: the position is extrapolated.
+  // No range arrived for a second, or for two rounds of the anchors if those take longer: the position is
+  // extrapolated.
   KESTIRIM_TAG_STATE_COASTING = 2,
-  // The position has become worthless: the next ranges make a new one.
+  // The position has become useless: the next ranges determine a new one.
   KESTIRIM_TAG_STATE_LOST = 3,
 };
 #ifndef __cplusplus
@@ -208,9 +225,9 @@ enum kestirim_sensor
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // A calibrated unit (`MicroStrain`, Xsens, NGIMU): its gyroscope starts within 3 mrad/s of zero.
+  // Calibrated unit (`MicroStrain`, Xsens, NGIMU): its gyroscope starts within 3 mrad/s of zero.
   KESTIRIM_SENSOR_INDUSTRIAL = 0,
-  // A bare chip (MPU-6050, MPU-9250, BNO055, LSM6DS): its gyroscope may start 0.1 rad/s off.
+  // Bare chip (MPU-6050, MPU-9250, BNO055, LSM6DS): its gyroscope may start 0.1 rad/s off.
   KESTIRIM_SENSOR_CONSUMER = 1,
 };
 #ifndef __cplusplus
@@ -221,25 +238,25 @@ typedef uint32_t kestirim_sensor;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Bits of `kestirim_health.reasons`: why an estimate is not good.
+// Reasons why an estimate is not good: the bits of `kestirim_health.reasons`.
 enum kestirim_reason
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // A sensor was at its end.
+  // A sensor reached the end of its range.
   KESTIRIM_REASON_SATURATED = 1,
-  // A sensor repeated itself.
+  // A sensor keeps repeating the same value.
   KESTIRIM_REASON_STUCK = (1 << 1),
-  // Data are missing, or too few.
+  // Data are missing, or there are too few.
   KESTIRIM_REASON_DROPOUT = (1 << 2),
-  // More measurements than usual contradict the estimate and were left out.
+  // More measurements than usual contradict the estimate and were rejected.
   KESTIRIM_REASON_REJECTED = (1 << 3),
-  // What the estimate needs cannot be seen in the data.
+  // A quantity that the estimate needs is not observable in the data.
   KESTIRIM_REASON_NOT_OBSERVABLE = (1 << 4),
-  // Times run too fast or too slow, or products belong to another time.
+  // Time stamps run too fast or too slow, some data are later than others, or products belong to another time.
   KESTIRIM_REASON_TIME = (1 << 5),
-  // Data seem to be in another unit, or of another sign.
+  // Data seem to be in another unit or to have another sign.
   KESTIRIM_REASON_UNITS = (1 << 6),
   // Axes seem to be swapped or mirrored.
   KESTIRIM_REASON_AXES = (1 << 7),
@@ -247,11 +264,11 @@ enum kestirim_reason
   KESTIRIM_REASON_GEOMETRY = (1 << 8),
   // One anchor, or two that seem swapped, contradict the others.
   KESTIRIM_REASON_ANCHOR = (1 << 9),
-  // The height that was said contradicts the measurements.
+  // The height that was given contradicts the measurements.
   KESTIRIM_REASON_HEIGHT = (1 << 10),
-  // What is left of the measurements is beyond its bound.
+  // The innovations of the measurements exceed their bound.
   KESTIRIM_REASON_INNOVATIONS = (1 << 11),
-  // The estimate left the range of its numbers.
+  // The estimate left the range of its number format.
   KESTIRIM_REASON_RANGE = (1 << 12),
 };
 #ifndef __cplusplus
@@ -262,15 +279,15 @@ typedef uint32_t kestirim_reason;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// How well the anchors are known.
+// Calibration of the anchors' ranges.
 enum kestirim_calibration
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-  // As they come: ranges are too long by a decimetre or two.
+  // Uncalibrated anchors: ranges are too long by a decimetre or two.
   KESTIRIM_CALIBRATION_UNCALIBRATED = 0,
-  // Each anchor's bias is known, to 5 cm.
+  // Calibrated anchors: the bias of each is known to 5 cm.
   KESTIRIM_CALIBRATION_CALIBRATED = 1,
 };
 #ifndef __cplusplus
@@ -281,7 +298,7 @@ typedef uint32_t kestirim_calibration;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Carriers on which a satellite is observed.
+// Pairs of carriers on which a satellite can be observed.
 enum kestirim_gnss_carriers
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
@@ -310,82 +327,115 @@ typedef uint32_t kestirim_gnss_carriers;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// A search for a transmitter of unknown power over open ground, from the levels that a drone receives.
+// Navigation messages from which ephemerides can be collected.
+enum kestirim_gnss_message
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // LNAV of GPS on L1 C/A: a subframe of 10 words of 30 bits, right aligned, parity last.
+  KESTIRIM_GNSS_MESSAGE_LNAV = 0,
+  // I/NAV of Galileo on E1-B or E5b-I: a page of 8 words of 32 bits, the even part first.
+  KESTIRIM_GNSS_MESSAGE_INAV = 1,
+  // D1 of BeiDou on B1I, B2I or B3I: a subframe of 10 words of 30 bits, right aligned, parity last. The
+  // geostationary C01 to C05 and C59 to C63 send D2 instead.
+  KESTIRIM_GNSS_MESSAGE_D1 = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum kestirim_gnss_message kestirim_gnss_message;
+#else
+typedef uint32_t kestirim_gnss_message;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// A transmitter search: locates a transmitter of unknown power over open ground, from the levels that a drone
+// receives.
 //
-// Places are metres in a plane (such as east and north) of one origin for drone and transmitter.
+// Places are coordinates in a horizontal plane (such as east and north), m, with one origin for drone and transmitter.
 typedef struct kestirim_drone kestirim_drone;
 
-// A filter of precise point positioning: where a receiver is, to a centimetre, from its dual-frequency observations and
-// from orbits and clocks of a service. Double precision: for processors with memory.
+// A GNSS filter: precise point positioning of a receiver, to a centimetre, from its dual-frequency observations and
+// the orbits and clocks of a service. It computes in double precision, for processors with enough memory.
 //
-// Frame: Earth-centred and Earth-fixed (ECEF, that of the orbits), m; deviations to the east, north and up. Time is GPS
-// time.
+// Frame: Earth-centred, Earth-fixed (ECEF, that of the orbits), m; standard deviations are to the east, north and up.
+// Times are in GPS time.
 typedef struct kestirim_gnss kestirim_gnss;
 
-// The pedestrian's tracker: where an IMU on a foot is, from what it measures.
+// An ephemeris collection: ephemerides assembled from the navigation messages that satellites broadcast. With them a
+// receiver needs no service, and its position is good to metres. It computes in double precision, for processors with
+// enough memory.
+typedef struct kestirim_gnss_broadcast kestirim_gnss_broadcast;
+
+// A pedestrian tracker: estimates the path of a walking foot from the IMU on it.
 //
-// Frames: `body` is the IMU's axes, right-handed. `earth` has z up; its origin is where the foot stood first, its
-// heading the one it had then.
+// Frames: `body` has the IMU's axes, right-handed. `earth` has z up; its origin and its heading are those of the
+// sensor when the foot first stood.
 typedef struct kestirim_pedestrian kestirim_pedestrian;
 
-// A tag in the plane at a known height: position and velocity from single ranges to anchors, in any order, with IMU and
-// wheels if there are any.
+// A tag tracker: estimates position and velocity of a tag in the plane, at a known height, from single ranges to
+// anchors in any order, optionally with an IMU and wheels.
 //
-// Frame: the room's axes in which the anchors are given, right-handed with z up, m.
+// Frame: `room` has the axes in which the anchors are given, right-handed with z up, m.
 typedef struct kestirim_robot kestirim_robot;
 
-// A Kalman filter along a flight: samples of any times, with gaps between them and outputs that are missing.
+// A flight filter: a Kalman filter of an aircraft's longitudinal motion, for samples at any times, with gaps and
+// missing outputs.
 //
-// States: angle of attack (rad), pitch rate (rad/s), airspeed (m/s), pitch angle (rad). Inputs: elevator (rad), throttle
-// (0 to 1). All are deviations from the steady flight at which the model was linearised: subtract it from what is
-// measured and applied, and add it to the estimate. Axes are the body's, in a vertical plane.
+// States: angle of attack (rad), pitch rate (rad/s), airspeed (m/s), pitch angle (rad). Inputs: elevator (rad),
+// throttle (0 to 1). All are deviations from the steady flight at which the model was linearised: subtract its values
+// from measurements and inputs, and add them to the estimate. The motion is in a vertical plane, in the body's axes.
 typedef struct kestirim_uav kestirim_uav;
 
-// A tag in the plane on a robot whose wheels are counted: the wheels move the estimate, the ranges correct it. Scale and
-// drift of the wheels' turns are estimated, and so is the heading, of which nothing need be known.
+// A wheel tracker: estimates the position of a tag in the plane on a robot with wheel odometry. The wheels drive the
+// prediction, the ranges correct it. The wheels' scale, the gain and drift of their turns, and the heading are
+// estimated: the heading need not be known.
 //
-// Frame: the room's axes in which the anchors are given, right-handed with z up, m.
+// Frame: `room` has the axes in which the anchors are given, right-handed with z up, m.
 typedef struct kestirim_wheels kestirim_wheels;
 
-// A level that the drone received.
+// A level that the drone received from the transmitter, and where.
 typedef struct kestirim_drone_measurement {
-  // Where the drone is, m: x, y.
+  // Place of the drone, m: x, y.
   float place[2];
-  // Its height above the transmitter, m.
+  // Height of the drone above the transmitter, m.
   float height;
-  // The level, dBm or dB of any reference, the same for all measurements.
+  // Received level, dBm or dB relative to any reference that is the same for all measurements.
   float level;
 } kestirim_drone_measurement;
 
-// Where the transmitter is.
+// Estimated place of the transmitter.
 typedef struct kestirim_drone_place {
-  // Its place, m: x, y.
+  // Place of the transmitter, m: x, y.
   float place[2];
-  // Standard deviation of the place: root of the sum of both axes' variances, m.
+  // Standard deviation of the place, m: the root of the sum of both axes' variances.
   float sigma;
-  // The level that is received a metre from it, in the measurements' unit.
+  // Level received at one metre from the transmitter, in the measurements' unit.
   float level;
 } kestirim_drone_place;
 
-// Whether an estimate can be relied upon, and all reasons why not.
+// Whether an estimate can be relied upon, and all reasons why it cannot.
 typedef struct kestirim_health {
-  // How far: the state of the worst reason.
+  // Degree to which it can be relied upon: the state of the worst reason.
   kestirim_state state;
-  // A bit a reason: see `kestirim_health_reason`.
+  // The reasons, one bit each: `kestirim_reason`.
   uint32_t reasons;
 } kestirim_health;
 
-// Settings of the filter.
+// Settings of a GNSS filter.
 typedef struct kestirim_gnss_config {
-  // 0: the receiver is at rest. Above: it moves, and this is the variance that a second adds to each coordinate, m²/s
-  // (1e4 for anything).
+  // Process noise of a moving receiver: the variance added to each coordinate per second, m²/s (1e4 for any motion).
+  // 0 for a receiver at rest.
   double process_noise;
-  // Lowest elevation of a satellite, rad; 0.14 is 8 degrees.
+  // Elevation mask, rad: lower satellites are not used. 0.14 is 8 degrees.
   double elevation_mask;
-  // UT1 (or UTC) minus GPS time, s: the leap seconds since 1980, negated; -18 since 2017.
+  // UT1 (or UTC) minus GPS time, s: the negative number of leap seconds since 1980, -18 since 2017.
   double ut1_minus_gps;
-  // From the marker to the antenna's reference point, m: east, north, up.
+  // Vector from the marker to the antenna's reference point, m: east, north, up.
   double eccentricity[3];
+  // Source of orbits and clocks: 0 for a service, 1 for the satellites' broadcast ephemerides
+  // (`kestirim_gnss_broadcast_at`), whose errors persist for hours.
+  uint8_t broadcast;
 } kestirim_gnss_config;
 
 // An instant in GPS time.
@@ -396,248 +446,257 @@ typedef struct kestirim_gnss_time {
   double second;
 } kestirim_gnss_time;
 
-// The phase centre of an antenna on one frequency, as an ANTEX file describes it.
+// Phase centre of an antenna on one frequency, as an ANTEX file describes it.
 typedef struct kestirim_gnss_pattern {
-  // Mean phase centre from the antenna's reference point, m: north, east, up of a receiver's; X, Y, Z of a satellite's.
+  // Mean phase centre, m: for a receiver's antenna north, east and up of its reference point; for a satellite's
+  // along X, Y and Z of its body.
   double offset[3];
-  // First zenith or nadir angle of the grid, degrees.
+  // First angle of the grid, degrees: from the zenith (receiver) or nadir (satellite).
   double first;
-  // Step of the grid, degrees.
+  // Step of the grid's zenith or nadir angles, degrees.
   double step;
-  // Phase centre variation at each angle, whatever the azimuth, m: `count` numbers.
+  // Azimuth-independent phase centre variation at each angle of the grid, m: `count` numbers.
   const double *mean;
-  // How many angles the grid has.
+  // Number of angles of the grid.
   size_t count;
-  // Step of the azimuths, degrees; 0 without them.
+  // Step of the azimuths, degrees; 0 if the grid has none.
   double azimuth_step;
-  // A row like `mean` for each azimuth from 0 to 360 degrees, one after the other, m.
+  // Phase centre variations that depend on the azimuth, m: a row like `mean` for each azimuth from 0 to 360 degrees,
+  // one after the other.
   const double *by_azimuth;
-  // How many numbers all these rows have; 0 without them.
+  // Total number of values in `by_azimuth`; 0 if the grid has no azimuths.
   size_t azimuth_count;
 } kestirim_gnss_pattern;
 
-// A satellite at the time of transmission.
+// State of a satellite at the time of transmission.
 typedef struct kestirim_gnss_satellite {
-  // Centre of mass, ECEF at that time, m.
+  // Position of the centre of mass, ECEF at the time of transmission, m; with broadcast ephemerides that of the
+  // antenna's phase centre.
   double position[3];
-  // Velocity, m/s.
+  // Velocity of the satellite, m/s, inertial or relative to the Earth.
   double velocity[3];
-  // Satellite clock minus GPS time, s, without the effect of its eccentric orbit.
+  // Satellite clock minus GPS time, s, without the relativistic effect of the eccentric orbit.
   double clock;
-  // Time from the clock's sample before to that after, s; 0: not interpolated.
+  // Interval between the two clock samples around the time of transmission, s; 0 if the clock is not interpolated.
   double clock_interval;
-  // Time to the nearer of both, s.
+  // Time to the nearer of the two clock samples, s.
   double clock_distance;
+  // Standard deviation of a range due to this orbit and clock, m, as the satellite broadcasts it; 0 for a service's.
+  double accuracy;
 } kestirim_gnss_satellite;
 
-// Observation of one satellite.
+// Observation of one satellite by the receiver in an epoch.
 typedef struct kestirim_gnss_observation {
-  // Number of the satellite, which no other has: a GPS satellite's PRN, a Galileo satellite's number and 100, say.
+  // Number of the satellite, unique among all systems: for example the PRN for GPS, 100 plus the number for Galileo.
   uint8_t satellite;
   // 1 if the receiver reports a loss of lock since the last epoch, else 0.
   uint8_t lock_lost;
-  // The channel of a satellite of GLONASS, -7 to 6; 0 of others.
+  // Frequency channel of a GLONASS satellite, -7 to 6; 0 for other systems.
   int8_t channel;
-  // Its two carriers: a `kestirim_gnss_carriers`.
+  // The two observed carriers: a `kestirim_gnss_carriers`.
   uint32_t carriers;
-  // Codes on both, m.
+  // Code observations (pseudoranges) on both carriers, m.
   double code[2];
-  // Carrier phases on both, cycles.
+  // Carrier phases on both carriers, cycles.
   double phase[2];
-  // The satellite.
+  // State of the satellite at the time of transmission.
   struct kestirim_gnss_satellite state;
-  // Its antenna on both carriers: two patterns, or null if they are not known.
+  // Antenna of the satellite on both carriers: two patterns, or null if they are unknown.
   const struct kestirim_gnss_pattern (*antenna)[2];
 } kestirim_gnss_observation;
 
-// Solution of one epoch.
+// Solution of a GNSS filter for one epoch.
 typedef struct kestirim_gnss_solution {
-  // The marker, ECEF, m, free of tides.
+  // Position of the marker, ECEF, m, free of tides.
   double position[3];
-  // Standard deviations to the east, north and up, m.
+  // Standard deviations of the position to the east, north and up, m.
   double sigma[3];
   // Receiver clock minus GPS time, m.
   double clock;
-  // Wet zenith delay, m.
+  // Wet zenith delay of the troposphere, m.
   double wet_delay;
-  // Whether it can be relied upon.
+  // Whether the solution can be relied upon.
   struct kestirim_health health;
-  // 1 if the ambiguities are known, so that the position is better than 10 cm, else 0.
+  // 1 if the ambiguities are known: the standard deviation of the position is below 10 cm; else 0.
   uint8_t converged;
-  // Satellites above the elevation mask.
+  // Number of satellites above the elevation mask.
   uint8_t satellites;
-  // Observations (codes and phases) that had less than their full weight.
+  // Number of observations (codes and phases) that had less than their full weight.
   uint8_t treated;
 } kestirim_gnss_solution;
 
 // One sample of a satellite's precise orbit (SP3).
 typedef struct kestirim_gnss_orbit_sample {
-  // Its time.
+  // Time of the sample.
   struct kestirim_gnss_time time;
-  // Centre of mass, ECEF at that time, m.
+  // Position of the satellite's centre of mass, ECEF at the time of the sample, m.
   double position[3];
 } kestirim_gnss_orbit_sample;
 
 // One sample of a satellite's precise clock (CLK, SP3).
 typedef struct kestirim_gnss_clock_sample {
-  // Its time.
+  // Time of the sample.
   struct kestirim_gnss_time time;
   // Satellite clock minus GPS time, s.
   double bias;
 } kestirim_gnss_clock_sample;
 
-// Settings of sensor and foot.
+// Settings of a pedestrian tracker: the sensor and its mounting on the foot.
 typedef struct kestirim_pedestrian_config {
   // Class of the IMU: a `kestirim_sensor`.
   uint32_t sensor;
-  // Height of the sensor above the ball of the foot, about which the foot rolls, m. 0 takes it for motionless.
+  // Height of the sensor above the ball of the foot, about which the foot rolls in stance, m. 0 treats a standing
+  // foot as motionless.
   float contact_height;
 } kestirim_pedestrian_config;
 
 // One sample of the foot's IMU.
 typedef struct kestirim_pedestrian_sample {
-  // Time of the sample, µs since any moment.
+  // Time of the sample, µs since any epoch.
   uint64_t time_us;
-  // Specific force, as an accelerometer measures it, m/s², body: +9.8 upwards at rest.
+  // Specific force, as an accelerometer measures it, m/s², body frame: +9.8 upwards at rest.
   float specific_force[3];
-  // Angular rate, as a gyroscope measures it, rad/s, body.
+  // Angular rate, as a gyroscope measures it, rad/s, body frame.
   float angular_rate[3];
 } kestirim_pedestrian_sample;
 
 // A stride: from one stance of the foot to the next.
 typedef struct kestirim_pedestrian_stride {
-  // End of the stance it arrived at, µs, the samples' clock.
+  // End of the stance at which the stride arrived, µs on the samples' clock.
   uint64_t time_us;
-  // Where that is, m, earth.
+  // Position of the stance at which the stride arrived, m, earth frame.
   float position[3];
-  // Horizontal distance from the stance before, m.
+  // Horizontal distance from the preceding stance, m.
   float length;
-  // Time since the end of the stance before, s.
+  // Time since the end of the preceding stance, s.
   float duration;
-  // Turn of its direction from that of the stride before, rad, anticlockwise from above; 0 of the first.
+  // Change of direction from the preceding stride, rad, anticlockwise from above; 0 for the first stride.
   float heading_change;
 } kestirim_pedestrian_stride;
 
-// Estimate after a sample.
+// Estimate of the foot's state after a sample.
 typedef struct kestirim_pedestrian_state {
-  // Time of the sample, µs.
+  // Time of the sample, µs on the samples' clock.
   uint64_t time_us;
-  // Position of the sensor, m, earth.
+  // Position of the sensor, m, earth frame.
   float position[3];
-  // Velocity of the sensor, m/s, earth.
+  // Velocity of the sensor, m/s, earth frame.
   float velocity[3];
-  // Orientation of the sensor, body to earth: quaternion w, x, y, z.
+  // Orientation of the sensor, from the body to the earth frame: quaternion w, x, y, z.
   float orientation[4];
   // 1 if the foot stands, else 0.
   uint8_t stance;
-  // 1 if this sample completed a stride, which is `stride`, else 0.
+  // 1 if this sample completed a stride, described by `stride`; else 0.
   uint8_t has_stride;
-  // The stride, if there is one; else zeros.
+  // The completed stride; zeros if `has_stride` is 0.
   struct kestirim_pedestrian_stride stride;
 } kestirim_pedestrian_state;
 
-// Settings of a tag's tracker.
+// Settings of a tag tracker or wheel tracker.
 typedef struct kestirim_tag_config {
-  // How well the anchors are known: a `kestirim_calibration`.
+  // Calibration of the anchors: a `kestirim_calibration`.
   uint32_t calibration;
-  // Height of the tag in the room, m.
+  // Height of the tag in the room frame, m.
   float height;
 } kestirim_tag_config;
 
-// An anchor: where it is, and by how much it measures too long.
+// An anchor, with its position and range bias.
 typedef struct kestirim_anchor {
-  // Position, m, room: x, y, z.
+  // Position of the anchor, m, room frame: x, y, z.
   float position[3];
-  // What its ranges are too long by, m; 0 if that is not known.
+  // Bias of its ranges, m, positive if they are too long; 0 if unknown.
   float bias;
 } kestirim_anchor;
 
-// One measured distance.
+// One range: the measured distance from the tag to an anchor.
 typedef struct kestirim_range {
-  // Time of the measurement, µs since any moment.
+  // Time of the measurement, µs since any epoch.
   uint64_t time_us;
-  // The anchor's place in the array that the tracker was made with.
+  // Index of the anchor in the array with which the tracker was created.
   uint32_t anchor;
-  // The distance, m; small negative ones are accepted.
+  // The distance, m; small negative values are accepted.
   float range;
 } kestirim_range;
 
-// What became of a range.
+// Outcome and innovation of a range.
 typedef struct kestirim_range_report {
-  // Its outcome.
+  // What the tracker did with the range.
   kestirim_range_outcome outcome;
-  // Measured minus expected, m; 0 without an estimate.
+  // Innovation of the range, measured minus expected, m; 0 without an estimate.
   float innovation;
-  // Its variance, m²; 0 without an estimate.
+  // Variance of the innovation, m²; 0 without an estimate.
   float variance;
-  // Its square by its variance: 1 on average when the model is right.
+  // Normalised innovation squared (NIS): the square of the innovation over its variance, 1 on average if the model
+  // is right; 0 without an estimate.
   float nis;
 } kestirim_range_report;
 
-// One sample of an IMU on the tag.
+// One sample of an IMU that is fixed to the tag.
 typedef struct kestirim_inertial {
-  // Time of the sample, µs, the ranges' clock.
+  // Time of the sample, µs on the ranges' clock.
   uint64_t time_us;
-  // Acceleration in the body's axes, with or without gravity, m/s². From its changes the tracker tells standing from
-  // moving.
+  // Acceleration in the body's axes, with or without gravity, m/s². From its changes the tracker distinguishes
+  // standing from moving.
   float acceleration[3];
 } kestirim_inertial;
 
-// What the wheels do.
+// One sample of wheel odometry.
 typedef struct kestirim_odometry {
-  // Time of the measurement, µs, the ranges' clock.
+  // Time of the measurement, µs on the ranges' clock.
   uint64_t time_us;
   // Mean speed of the wheels, m/s.
   float speed;
-  // Difference of their speeds by the track, or the rate of a gyroscope beside them, rad/s.
+  // Turn rate, rad/s: the difference of the wheels' speeds over the track, or the rate of a gyroscope.
   float turn_rate;
 } kestirim_odometry;
 
-// Health of a tag's tracker in numbers.
+// Health of a tag tracker or wheel tracker in numbers.
 typedef struct kestirim_tag_health {
   // State of the position.
   kestirim_tag_state state;
-  // Ranges taken in so far.
+  // Number of ranges used so far.
   uint32_t taken;
-  // Ranges left out so far.
+  // Number of ranges rejected so far.
   uint32_t rejected;
-  // Positions begun anew after the first.
+  // Number of positions begun after the first.
   uint16_t restarts;
-  // Anchors heard lately of which nothing is in the way.
+  // Number of anchors heard within the last second, or two rounds of the anchors if those take longer, except
+  // blocked ones, whose ranges have been too long for a while.
   uint8_t heard;
-  // 1 if the tag stands still, as far as IMU or wheels tell, else 0.
+  // 1 if the tag stands still according to the IMU or the wheels, else 0.
   uint8_t still;
-  // Mean NIS of the last twenty ranges or so: 1 when the model is right.
+  // Mean normalised innovation squared of about the last twenty ranges that were used: 1 if the model is right.
   float nis;
   // Dilution of precision of the anchors heard; 0 if they do not determine a position.
   float dilution;
 } kestirim_tag_health;
 
-// The model of an aircraft near its steady flight and of its sensors: x' = A x + B u, y = C x. Rows one after another.
+// Linear model of an aircraft near its steady flight and of its sensors: x' = A x + B u, y = C x. Matrices are
+// row-major.
 typedef struct kestirim_uav_model {
-  // A: 4 rows of 4.
+  // State matrix A: 4 rows of 4.
   double a[4][4];
-  // B: 4 rows of 2.
+  // Input matrix B: 4 rows of 2.
   double b[4][2];
-  // C: a row of 4 an output, in whatever unit the output has.
+  // Output matrix C: one row of 4 per output, in the unit of that output.
   double c[KESTIRIM_UAV_OUTPUTS][4];
-  // Standard deviations of what reaches the aircraft beside elevator (rad) and throttle, a sample.
+  // Standard deviations, per sample, of the noise on the inputs elevator (rad) and throttle.
   double input_sigma[2];
-  // Standard deviation of each output, in its unit.
+  // Standard deviation of each measured output, in its unit.
   double output_sigma[KESTIRIM_UAV_OUTPUTS];
-  // How long an interval between two samples usually is, s.
+  // Usual interval between two samples, s.
   double usual_interval;
 } kestirim_uav_model;
 
-// Inputs and outputs of one time, in deviations from the model's steady flight.
+// Inputs and outputs at one time, as deviations from the model's steady flight.
 typedef struct kestirim_uav_sample {
-  // Time of the sample, µs since any moment.
+  // Time of the sample, µs since any epoch.
   int64_t time_us;
-  // Elevator (rad) and throttle (0 to 1), applied from this time until the next sample.
+  // Inputs elevator (rad) and throttle (0 to 1), applied from this time until the next sample.
   double input[2];
-  // The outputs, in the order and the units of C's rows.
+  // Measured outputs, in the order and the units of C's rows.
   double measured[KESTIRIM_UAV_OUTPUTS];
-  // A bit an output: 1 if it was measured. The first row's is bit 0; 7 is all three.
+  // Which outputs were measured, one bit each: bit 0 for C's first row; 7 for all three.
   uint32_t present;
 } kestirim_uav_sample;
 
@@ -645,41 +704,43 @@ typedef struct kestirim_uav_sample {
 extern "C" {
 #endif // __cplusplus
 
-// Bytes that a search takes on this target. An estimate needs 16 kB of stack on a computer, 9 kB on a microcontroller.
+// Size of a transmitter search on this target, bytes. An estimate needs 16 kB of stack on a computer, 9 kB on a
+// microcontroller.
 size_t kestirim_drone_size(void);
 
-// Alignment of its memory, bytes.
+// Alignment of the transmitter search's memory on this target, bytes.
 size_t kestirim_drone_align(void);
 
-// Makes a search in memory of at least `kestirim_drone_size()` bytes, in an area with these corners (x, y, m, in either
-// sense of rotation), of which there may be `KESTIRIM_MOST_CORNERS`.
+// Creates a transmitter search in memory of at least `kestirim_drone_size()` bytes, for an area with these corners (x,
+// y, m, in either sense of rotation), at most `KESTIRIM_MOST_CORNERS`.
 //
-// Errors: `TOO_MANY`; `GEOMETRY` if the corners enclose nothing; `NOT_FINITE`.
+// Errors: `TOO_MANY`; `GEOMETRY` if the corners enclose no area; `NOT_FINITE`.
 kestirim_status kestirim_drone_init(void *memory,
                                     size_t size,
                                     const float (*corners)[2],
                                     size_t count,
                                     struct kestirim_drone **search);
 
-// Takes in a measurement.
+// Adds a measurement of the transmitter's level.
 //
 // Errors: `NOT_FINITE`; `INVALID_ARGUMENT` if the height is not positive; `IMPLAUSIBLE` beyond 300 dB.
 kestirim_status kestirim_drone_update(struct kestirim_drone *search,
                                       const struct kestirim_drone_measurement *measurement);
 
-// Computes where the transmitter is from all measurements that are kept: much work, so ask for it when it is wanted.
+// Estimates the place of the transmitter from all measurements that are kept. This takes much computing time: call it
+// only when a place is needed.
 //
-// Errors: `NO_ESTIMATE` without a measurement; `CONTRADICTORY` if nothing in the area explains them.
+// Errors: `NO_ESTIMATE` without a measurement; `CONTRADICTORY` if no place in the area explains the measurements.
 kestirim_status kestirim_drone_estimate(const struct kestirim_drone *search,
                                         struct kestirim_drone_place *estimate);
 
-// Whether an estimate can be relied upon: `DROPOUT` with fewer than three measurements. How well they determine the
-// place, its standard deviation says.
+// Whether an estimate of the transmitter's place can be relied upon: `DROPOUT` with fewer than three measurements. How
+// well the measurements determine the place is shown by its standard deviation.
 kestirim_status kestirim_drone_health(const struct kestirim_drone *search,
                                       struct kestirim_health *health);
 
-// Stores the search in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_DRONE_SNAPSHOT` bytes are
-// enough, `length` tells how many it took.
+// Stores the transmitter search in a buffer, to be restored after a sleep or on another machine.
+// `KESTIRIM_DRONE_SNAPSHOT` bytes are enough; `length` receives the number of bytes used.
 //
 // Errors: `TOO_SMALL` for the buffer.
 kestirim_status kestirim_drone_snapshot(const struct kestirim_drone *search,
@@ -687,8 +748,9 @@ kestirim_status kestirim_drone_snapshot(const struct kestirim_drone *search,
                                         size_t capacity,
                                         size_t *length);
 
-// Makes the search in memory of at least `kestirim_drone_size()` bytes that `kestirim_drone_snapshot` stored: it goes on
-// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+// Restores a transmitter search from a snapshot that `kestirim_drone_snapshot` stored, in memory of at least
+// `kestirim_drone_size()` bytes. It continues bit for bit as if there had been no interruption. `length` may exceed
+// the snapshot, such as a whole page of flash.
 //
 // Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
 kestirim_status kestirim_drone_restore(void *memory,
@@ -697,27 +759,27 @@ kestirim_status kestirim_drone_restore(void *memory,
                                        size_t length,
                                        struct kestirim_drone **search);
 
-// Bytes that a filter takes on this target. An epoch needs 96 kB of stack at most.
+// Size of a GNSS filter on this target, bytes. An epoch needs at most 96 kB of stack.
 size_t kestirim_gnss_size(void);
 
-// Alignment of its memory, bytes.
+// Alignment of the GNSS filter's memory on this target, bytes.
 size_t kestirim_gnss_align(void);
 
-// Makes a filter in memory of at least `kestirim_gnss_size()` bytes, before its first epoch: it starts by itself.
+// Creates a GNSS filter in memory of at least `kestirim_gnss_size()` bytes. It finds its first position by itself.
 //
-// Errors: `NOT_FINITE`.
+// Errors: `NOT_FINITE`; `INVALID_ARGUMENT`.
 kestirim_status kestirim_gnss_init(void *memory,
                                    size_t size,
                                    const struct kestirim_gnss_config *config,
                                    struct kestirim_gnss **filter);
 
-// Takes in an epoch, observed at `time` by the receiver's clock: up to `KESTIRIM_MOST_SATELLITES` complete observations. The clock
-// of each system beside GPS takes the room of one: what there is no room for is left out.
-// `receiver` is the receiver's antenna on L1 and L2, two patterns, or null if it is not known; for the carriers of
-// other systems it serves as well. `solution` may be null if it is not wanted. Tides of the ocean are not corrected for.
+// Processes an epoch, observed at `time` by the receiver's clock: up to `KESTIRIM_MOST_SATELLITES` complete
+// observations. The clock of each system other than GPS takes the room of one satellite; satellites without room are
+// left out. `receiver` is the receiver's antenna on L1 and L2, two patterns, or null if it is unknown; it is also used
+// for the carriers of other systems. `solution` may be null. Ocean loading and the pole tide are not corrected for.
 //
 // Errors: `TOO_FEW` satellites; `TOO_MANY`; `GEOMETRY`; `OUT_OF_ORDER`; `CONTRADICTORY`; `NOT_FINITE`;
-// `INVALID_ARGUMENT` of carriers, a channel or settings.
+// `INVALID_ARGUMENT` for carriers, a channel, an accuracy or settings.
 kestirim_status kestirim_gnss_update(struct kestirim_gnss *filter,
                                      const struct kestirim_gnss_time *time,
                                      const struct kestirim_gnss_pattern (*receiver)[2],
@@ -725,25 +787,27 @@ kestirim_status kestirim_gnss_update(struct kestirim_gnss *filter,
                                      size_t count,
                                      struct kestirim_gnss_solution *solution);
 
-// The marker in the last epoch that had a solution, ECEF, m.
+// Position of the marker in the last epoch that had a solution, ECEF, m.
 //
-// Errors: `NO_ESTIMATE`.
+// Errors: `NO_ESTIMATE` before the first solution.
 kestirim_status kestirim_gnss_position(const struct kestirim_gnss *filter, double (*position)[3]);
 
-// Its standard deviations to the east, north and up, m.
+// Standard deviations of the marker's position to the east, north and up, in the last epoch that had a solution, m.
 //
-// Errors: `NO_ESTIMATE`.
-kestirim_status kestirim_gnss_sigma(const struct kestirim_gnss *filter, double (*sigma)[3]);
+// Errors: `NO_ESTIMATE` before the first solution.
+kestirim_status kestirim_gnss_sigma(const struct kestirim_gnss *filter,
+                                    double (*sigma)[3]);
 
-// Whether it can be relied upon: `NOT_OBSERVABLE` where hardly more is observed than is unknown, `INNOVATIONS` where the
-// observations contradict the solution or each other, with `REJECTED` if too many were left out.
+// Whether the last solution can be relied upon. Reasons why not: `NOT_OBSERVABLE` if hardly more observations are left
+// than unknowns; `INNOVATIONS` if the observations contradict the solution, each other or earlier solutions, together
+// with `REJECTED` if too many were rejected.
 //
-// Errors: `NO_ESTIMATE`.
+// Errors: `NO_ESTIMATE` before the first solution.
 kestirim_status kestirim_gnss_health(const struct kestirim_gnss *filter,
                                      struct kestirim_health *health);
 
-// Stores the filter in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_GNSS_SNAPSHOT` bytes are
-// enough, `length` tells how many it took.
+// Stores the GNSS filter in a buffer, to be restored after a sleep or on another machine. `KESTIRIM_GNSS_SNAPSHOT`
+// bytes are enough; `length` receives the number of bytes used.
 //
 // Errors: `TOO_SMALL` for the buffer.
 kestirim_status kestirim_gnss_snapshot(const struct kestirim_gnss *filter,
@@ -751,8 +815,9 @@ kestirim_status kestirim_gnss_snapshot(const struct kestirim_gnss *filter,
                                        size_t capacity,
                                        size_t *length);
 
-// Makes the filter in memory of at least `kestirim_gnss_size()` bytes that `kestirim_gnss_snapshot` stored: it goes on
-// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+// Restores a GNSS filter from a snapshot that `kestirim_gnss_snapshot` stored, in memory of at least
+// `kestirim_gnss_size()` bytes. It continues bit for bit as if there had been no interruption. `length` may exceed
+// the snapshot, such as a whole page of flash.
 //
 // Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
 kestirim_status kestirim_gnss_restore(void *memory,
@@ -761,11 +826,52 @@ kestirim_status kestirim_gnss_restore(void *memory,
                                       size_t length,
                                       struct kestirim_gnss **filter);
 
-// Where a satellite was when it sent what was received at `time` by the receiver's clock, with this code (m): by the
-// polynomial through eleven samples of its orbit, and the line between two of its clock. Samples are in the order of
-// time, evenly spaced ones of the orbit, `KESTIRIM_MOST_PRODUCTS` of either at most.
+// Size of an ephemeris collection on this target, bytes.
+size_t kestirim_gnss_broadcast_size(void);
+
+// Alignment of an ephemeris collection's memory on this target, bytes.
+size_t kestirim_gnss_broadcast_align(void);
+
+// Creates an ephemeris collection without satellites in memory of at least `kestirim_gnss_broadcast_size()` bytes.
+kestirim_status kestirim_gnss_broadcast_init(void *memory,
+                                             size_t size,
+                                             struct kestirim_gnss_broadcast **broadcast);
+
+// Processes a part of a satellite's navigation message, as a receiver outputs it (UBX-RXM-SFRBX): `message` is a
+// `kestirim_gnss_message`, `words` are its `count` words, and `received` is the time of the last epoch, which
+// determines the week. `satellite` is the same number as in the satellite's observations. `complete` receives 1 if the
+// part completes an ephemeris, else 0; it may be null.
 //
-// Errors: `GAP` if the samples do not cover that time; `TOO_MANY`; `NOT_FINITE`.
+// Errors: `TOO_FEW` words; `DAMAGED_MESSAGE` for a wrong checksum, an alert, or a part of another message, all of
+// which occur in streams: continue with the next part; `INVALID_ARGUMENT` for an unknown message; `NOT_FINITE`.
+kestirim_status kestirim_gnss_broadcast_take(struct kestirim_gnss_broadcast *broadcast,
+                                             uint8_t satellite,
+                                             uint32_t message,
+                                             const uint32_t *words,
+                                             size_t count,
+                                             const struct kestirim_gnss_time *received,
+                                             uint8_t *complete);
+
+// State of a satellite at the transmission of a signal, from its broadcast ephemeris. `received` is the time of
+// reception by the receiver's clock, `code` the code observation on the first carrier (m), and `on` the two observed
+// carriers, a `kestirim_gnss_carriers`. The position is that of the antenna's phase centre, so `antenna` must be null
+// in the observation.
+//
+// Errors: `GAP` while no ephemeris is complete or valid at that time; `UNHEALTHY`; `NO_GROUP_DELAY` if the message has
+// none for these carriers; `INVALID_ARGUMENT` for carriers; `NOT_FINITE`.
+kestirim_status kestirim_gnss_broadcast_at(const struct kestirim_gnss_broadcast *broadcast,
+                                           uint8_t satellite,
+                                           uint32_t on,
+                                           const struct kestirim_gnss_time *received,
+                                           double code,
+                                           struct kestirim_gnss_satellite *state);
+
+// State of a satellite at the transmission of a signal, from its precise orbit and clock. `time` is the time of
+// reception by the receiver's clock, `code` the code observation (m). The orbit is interpolated by the polynomial
+// through eleven samples, the clock linearly between two. Samples are in the order of time, those of the orbit evenly
+// spaced, at most `KESTIRIM_MOST_PRODUCTS` of each.
+//
+// Errors: `GAP` if the samples do not cover the time of transmission; `TOO_MANY`; `NOT_FINITE`.
 kestirim_status kestirim_gnss_satellite_at(const struct kestirim_gnss_time *time,
                                            double code,
                                            const struct kestirim_gnss_orbit_sample *orbit,
@@ -774,61 +880,63 @@ kestirim_status kestirim_gnss_satellite_at(const struct kestirim_gnss_time *time
                                            size_t clock_count,
                                            struct kestirim_gnss_satellite *satellite);
 
-// Bytes that a tracker takes on this target.
+// Size of a pedestrian tracker on this target, bytes.
 size_t kestirim_pedestrian_size(void);
 
-// Alignment of its memory, bytes.
+// Alignment of the pedestrian tracker's memory on this target, bytes.
 size_t kestirim_pedestrian_align(void);
 
-// Makes a tracker in memory of at least `kestirim_pedestrian_size()` bytes, before its first sample. `tracker` is its
-// handle from then on, and there is nothing to be freed.
+// Creates a pedestrian tracker in memory of at least `kestirim_pedestrian_size()` bytes. `tracker` receives its
+// handle; nothing has to be freed.
 kestirim_status kestirim_pedestrian_init(void *memory,
                                          size_t size,
                                          const struct kestirim_pedestrian_config *config,
                                          struct kestirim_pedestrian **tracker);
 
-// Takes the next sample.
+// Processes the next sample of the foot's IMU.
 //
-// A sample with the time of the last is taken for one that was sent twice and changes nothing.
+// A sample with the time of the last one counts as a repetition and changes nothing.
 //
-// Errors: `NOT_FINITE`; `IMPLAUSIBLE` beyond 1000 g or 100000 degrees a second; `OUT_OF_ORDER`.
+// Errors: `NOT_FINITE`; `IMPLAUSIBLE` beyond 1000 g or 100000 degrees per second; `OUT_OF_ORDER`.
 kestirim_status kestirim_pedestrian_update(struct kestirim_pedestrian *tracker,
                                            const struct kestirim_pedestrian_sample *sample);
 
-// The whole estimate after the last sample.
+// The complete estimate of the foot's state after the last sample.
 //
 // Errors: `NO_ESTIMATE` before the first sample.
 kestirim_status kestirim_pedestrian_now(const struct kestirim_pedestrian *tracker,
                                         struct kestirim_pedestrian_state *estimate);
 
-// Ends the walk: writes the stride that led to the stance the foot is in; `stride` may be null.
+// Ends the walk: completes the stride that led to the present stance, and writes it to `stride`, which may be null.
 //
 // Errors: `NO_ESTIMATE` if there is no such stride.
 kestirim_status kestirim_pedestrian_finish(struct kestirim_pedestrian *tracker,
                                            struct kestirim_pedestrian_stride *stride);
 
-// Position of the sensor after the last sample, m, earth: x, y, z. Zeros until the foot has stood.
+// Position of the foot's sensor after the last sample, m, earth frame: x, y, z. Zeros until the foot has stood.
 //
 // Errors: `NO_ESTIMATE` before the first sample.
 kestirim_status kestirim_pedestrian_position(const struct kestirim_pedestrian *tracker,
                                              float (*position)[3]);
 
-// Standard deviations of the position, m, earth: x, y, z; those after the last stride.
+// Standard deviations of the foot's position after the last stride, m, earth frame: x, y, z.
 kestirim_status kestirim_pedestrian_sigma(const struct kestirim_pedestrian *tracker,
                                           float (*sigma)[3]);
 
-// The horizontal path walked, from stance to stance, m.
+// Length of the horizontal path walked so far, from stance to stance, m.
 kestirim_status kestirim_pedestrian_path_length(const struct kestirim_pedestrian *tracker,
                                                 float *length);
 
-// Whether the path can be relied upon. `NOT_OBSERVABLE` stands there until the foot has stood still for half a
-// second, `SATURATED` if a sensor's range is too small, `UNITS` if g or degrees came for m/s² or rad, `AXES` if they
-// are swapped between the two sensors, `DROPOUT` after gaps, `INNOVATIONS` if strides end with too large a velocity.
+// Whether the path can be relied upon. Reasons why not: `NOT_OBSERVABLE` until the foot has stood still for half a
+// second; `SATURATED` if a sensor's range is too small; `UNITS` if values seem to be in g or degrees instead of m/s²
+// or rad, or the accelerometer needs calibration; `AXES` if axes are swapped between the two sensors; `DROPOUT` after
+// gaps or if the tilt was lost; `INNOVATIONS` if strides end with too large a velocity or jump; `RANGE` if the path
+// exceeds the range of the number format.
 kestirim_status kestirim_pedestrian_health(const struct kestirim_pedestrian *tracker,
                                            struct kestirim_health *health);
 
-// Stores the tracker in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_PEDESTRIAN_SNAPSHOT` bytes are
-// enough, `length` tells how many it took.
+// Stores the pedestrian tracker in a buffer, to be restored after a sleep or on another machine.
+// `KESTIRIM_PEDESTRIAN_SNAPSHOT` bytes are enough; `length` receives the number of bytes used.
 //
 // Errors: `TOO_SMALL` for the buffer.
 kestirim_status kestirim_pedestrian_snapshot(const struct kestirim_pedestrian *tracker,
@@ -836,8 +944,9 @@ kestirim_status kestirim_pedestrian_snapshot(const struct kestirim_pedestrian *t
                                              size_t capacity,
                                              size_t *length);
 
-// Makes the tracker in memory of at least `kestirim_pedestrian_size()` bytes that `kestirim_pedestrian_snapshot` stored: it goes on
-// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+// Restores a pedestrian tracker from a snapshot that `kestirim_pedestrian_snapshot` stored, in memory of at least
+// `kestirim_pedestrian_size()` bytes. It continues bit for bit as if there had been no interruption. `length` may
+// exceed the snapshot, such as a whole page of flash.
 //
 // Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
 kestirim_status kestirim_pedestrian_restore(void *memory,
@@ -846,14 +955,14 @@ kestirim_status kestirim_pedestrian_restore(void *memory,
                                             size_t length,
                                             struct kestirim_pedestrian **tracker);
 
-// Bytes that a tracker takes on this target.
+// Size of a tag tracker on this target, bytes.
 size_t kestirim_robot_size(void);
 
-// Alignment of its memory, bytes.
+// Alignment of the tag tracker's memory on this target, bytes.
 size_t kestirim_robot_align(void);
 
-// Makes a tracker in memory of at least `kestirim_robot_size()` bytes, before its first position, for up to
-// `KESTIRIM_MOST_ANCHORS` anchors. Ranges name them by their place in this array.
+// Creates a tag tracker without a position yet, in memory of at least `kestirim_robot_size()` bytes, for up to
+// `KESTIRIM_MOST_ANCHORS` anchors. Ranges refer to an anchor by its index in this array.
 //
 // Errors: `TOO_MANY`; `NOT_FINITE`.
 kestirim_status kestirim_robot_init(void *memory,
@@ -863,57 +972,59 @@ kestirim_status kestirim_robot_init(void *memory,
                                     size_t count,
                                     struct kestirim_robot **tracker);
 
-// Takes in a range. `report` may be null if it is not wanted.
+// Processes a range to an anchor. `report` receives its outcome, and may be null.
 //
-// Errors: `NO_SUCH_ANCHOR`; `IMPLAUSIBLE` below -1 m or above 200 m; `DUPLICATE`; `OUT_OF_ORDER` if it is more than 0.1 s
-// older than the estimate; `NOT_FINITE`.
+// Errors: `NO_SUCH_ANCHOR`; `IMPLAUSIBLE` below -1 m or above 200 m; `DUPLICATE`; `OUT_OF_ORDER` if it is more than
+// 0.1 s older than the estimate; `NOT_FINITE`.
 kestirim_status kestirim_robot_range(struct kestirim_robot *tracker,
                                      const struct kestirim_range *sample,
                                      struct kestirim_range_report *report);
 
-// Takes in a sample of an IMU: whether the tag stands.
+// Processes a sample of the tag's IMU, which shows whether the tag stands.
 //
 // Errors: `NOT_FINITE`; `IMPLAUSIBLE` beyond 500 m/s²; `OUT_OF_ORDER`.
 kestirim_status kestirim_robot_inertial(struct kestirim_robot *tracker,
                                         const struct kestirim_inertial *sample);
 
-// Takes in a sample of the wheels: speed, and whether it turns. `kestirim_wheels` makes more of them.
+// Processes a sample of the wheels: the speed, and whether the robot turns. `kestirim_wheels` makes fuller use of
+// wheels.
 //
 // Errors: `NOT_FINITE`; `IMPLAUSIBLE` beyond 100 m/s or rad/s; `OUT_OF_ORDER`.
 kestirim_status kestirim_robot_odometry(struct kestirim_robot *tracker,
                                         const struct kestirim_odometry *sample);
 
-// Sets the tag's height, m.
+// Sets the height of the tag in the room frame, m.
 //
 // Errors: `NOT_FINITE`.
 kestirim_status kestirim_robot_set_height(struct kestirim_robot *tracker, float height);
 
-// Position of the tag, m, room: x, y.
+// Position of the tag, m, room frame: x, y.
 //
-// Errors: `NO_ESTIMATE` before the first one, or when it is lost.
+// Errors: `NO_ESTIMATE` before the first position, or while it is lost.
 kestirim_status kestirim_robot_position(const struct kestirim_robot *tracker, float (*position)[2]);
 
-// Velocity of the tag, m/s, room: x, y.
+// Velocity of the tag, m/s, room frame: x, y.
 //
 // Errors: `NO_ESTIMATE`.
 kestirim_status kestirim_robot_velocity(const struct kestirim_robot *tracker, float (*velocity)[2]);
 
-// Standard deviation of the position at a time (µs), m: root of the sum of both axes' variances, with what the anchors'
-// constant errors add.
+// Standard deviation of the tag's position at a time (µs), m: the root of the sum of both axes' variances, including
+// the effect of the anchors' constant errors and of a second position that the ranges allow.
 //
 // Errors: `NO_ESTIMATE`.
 kestirim_status kestirim_robot_sigma(const struct kestirim_robot *tracker,
                                      uint64_t time_us,
                                      float *sigma);
 
-// Whether the position can be relied upon at a time (µs); `details` may be null if they are not wanted.
+// Whether the tag's position can be relied upon at a time (µs). `details` receives the health in numbers, and may be
+// null.
 kestirim_status kestirim_robot_health(const struct kestirim_robot *tracker,
                                       uint64_t time_us,
                                       struct kestirim_health *health,
                                       struct kestirim_tag_health *details);
 
-// Stores the tracker in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_ROBOT_SNAPSHOT` bytes are
-// enough, `length` tells how many it took.
+// Stores the tag tracker in a buffer, to be restored after a sleep or on another machine. `KESTIRIM_ROBOT_SNAPSHOT`
+// bytes are enough; `length` receives the number of bytes used.
 //
 // Errors: `TOO_SMALL` for the buffer.
 kestirim_status kestirim_robot_snapshot(const struct kestirim_robot *tracker,
@@ -921,8 +1032,9 @@ kestirim_status kestirim_robot_snapshot(const struct kestirim_robot *tracker,
                                         size_t capacity,
                                         size_t *length);
 
-// Makes the tracker in memory of at least `kestirim_robot_size()` bytes that `kestirim_robot_snapshot` stored: it goes on
-// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+// Restores a tag tracker from a snapshot that `kestirim_robot_snapshot` stored, in memory of at least
+// `kestirim_robot_size()` bytes. It continues bit for bit as if there had been no interruption. `length` may exceed
+// the snapshot, such as a whole page of flash.
 //
 // Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
 kestirim_status kestirim_robot_restore(void *memory,
@@ -931,21 +1043,21 @@ kestirim_status kestirim_robot_restore(void *memory,
                                        size_t length,
                                        struct kestirim_robot **tracker);
 
-// The name of a status, in plain English: a text that lives as long as the program. Of a number that is none,
-// "unknown status".
+// The meaning of a status in plain English, as a string with static lifetime; "unknown status" for a number that is
+// not a status.
 const char *kestirim_status_name(int32_t status);
 
-// Bytes that a filter takes on this target.
+// Size of a flight filter on this target, bytes.
 size_t kestirim_uav_size(void);
 
-// Alignment of its memory, bytes.
+// Alignment of the flight filter's memory on this target, bytes.
 size_t kestirim_uav_align(void);
 
-// The Aerosonde, a small unmanned aircraft, with a pitch gyroscope, a Pitot tube and an attitude reference at 100 Hz: a
-// model to begin with. Outputs are pitch rate (rad/s), airspeed (m/s) and pitch angle (rad).
+// Writes an example model: the Aerosonde, a small unmanned aircraft, with a pitch gyroscope, a Pitot tube and an
+// attitude reference at 100 Hz. Its outputs are pitch rate (rad/s), airspeed (m/s) and pitch angle (rad).
 kestirim_status kestirim_uav_aerosonde(struct kestirim_uav_model *model);
 
-// Makes a filter in memory of at least `kestirim_uav_size()` bytes, of which nothing is known yet but the model.
+// Creates a flight filter of a model, with an unknown state, in memory of at least `kestirim_uav_size()` bytes.
 //
 // Errors: `NOT_FINITE`; `INVALID_ARGUMENT` if the usual interval is not positive.
 kestirim_status kestirim_uav_init(void *memory,
@@ -953,28 +1065,31 @@ kestirim_status kestirim_uav_init(void *memory,
                                   const struct kestirim_uav_model *model,
                                   struct kestirim_uav **filter);
 
-// Takes in a sample. One that is more than a second older than the one before is not late: the clock was set back, and
-// the filter begins anew.
+// Processes a sample of a flight. If it is more than a second older than the preceding one, the clock was set back,
+// and the filter restarts.
 //
 // Errors: `OUT_OF_ORDER`; `GAP` of more than a million usual intervals; `NOT_FINITE`.
 kestirim_status kestirim_uav_update(struct kestirim_uav *filter,
                                     const struct kestirim_uav_sample *sample);
 
-// The estimate at the time of the last sample: angle of attack (rad), pitch rate (rad/s), airspeed (m/s), pitch angle
-// (rad), as deviations.
+// Estimate of the aircraft's state at the time of the last sample: angle of attack (rad), pitch rate (rad/s), airspeed
+// (m/s), pitch angle (rad), as deviations from the model's steady flight.
 kestirim_status kestirim_uav_estimate(const struct kestirim_uav *filter,
                                       double (*estimate)[4]);
 
-// Standard deviations of the estimate: rad, rad/s, m/s, rad.
-kestirim_status kestirim_uav_sigma(const struct kestirim_uav *filter, double (*sigma)[4]);
+// Standard deviations of the aircraft's estimated state: angle of attack (rad), pitch rate (rad/s), airspeed (m/s),
+// pitch angle (rad).
+kestirim_status kestirim_uav_sigma(const struct kestirim_uav *filter,
+                                   double (*sigma)[4]);
 
-// Whether the estimate can be relied upon: `INNOVATIONS` if measurements and model have contradicted each other over
-// about 200 samples, `REJECTED` if more than a tenth of about 50 samples' measurements were left out.
+// Whether the estimate of the flight can be relied upon. Reasons why not: `INNOVATIONS` if measurements and model have
+// contradicted each other over about 200 samples; `REJECTED` if over about 50 samples more than a tenth of the
+// measurements were rejected; `TIME` if over about 1000 samples outputs or inputs seem to be late.
 kestirim_status kestirim_uav_health(const struct kestirim_uav *filter,
                                     struct kestirim_health *health);
 
-// Stores the filter in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_UAV_SNAPSHOT` bytes are
-// enough, `length` tells how many it took.
+// Stores the flight filter in a buffer, to be restored after a sleep or on another machine. `KESTIRIM_UAV_SNAPSHOT`
+// bytes are enough; `length` receives the number of bytes used.
 //
 // Errors: `TOO_SMALL` for the buffer.
 kestirim_status kestirim_uav_snapshot(const struct kestirim_uav *filter,
@@ -982,8 +1097,9 @@ kestirim_status kestirim_uav_snapshot(const struct kestirim_uav *filter,
                                       size_t capacity,
                                       size_t *length);
 
-// Makes the filter in memory of at least `kestirim_uav_size()` bytes that `kestirim_uav_snapshot` stored: it goes on
-// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+// Restores a flight filter from a snapshot that `kestirim_uav_snapshot` stored, in memory of at least
+// `kestirim_uav_size()` bytes. It continues bit for bit as if there had been no interruption. `length` may exceed
+// the snapshot, such as a whole page of flash.
 //
 // Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
 kestirim_status kestirim_uav_restore(void *memory,
@@ -992,14 +1108,14 @@ kestirim_status kestirim_uav_restore(void *memory,
                                      size_t length,
                                      struct kestirim_uav **filter);
 
-// Bytes that a tracker takes on this target.
+// Size of a wheel tracker on this target, bytes.
 size_t kestirim_wheels_size(void);
 
-// Alignment of its memory, bytes.
+// Alignment of the wheel tracker's memory on this target, bytes.
 size_t kestirim_wheels_align(void);
 
-// Makes a tracker in memory of at least `kestirim_wheels_size()` bytes, before its first position, for up to
-// `KESTIRIM_MOST_ANCHORS` anchors. Ranges name them by their place in this array.
+// Creates a wheel tracker without a position yet, in memory of at least `kestirim_wheels_size()` bytes, for up to
+// `KESTIRIM_MOST_ANCHORS` anchors. Ranges refer to an anchor by its index in this array.
 //
 // Errors: `TOO_MANY`; `NOT_FINITE`.
 kestirim_status kestirim_wheels_init(void *memory,
@@ -1009,52 +1125,54 @@ kestirim_status kestirim_wheels_init(void *memory,
                                      size_t count,
                                      struct kestirim_wheels **tracker);
 
-// Takes in a range. `report` may be null if it is not wanted.
+// Processes a range to an anchor. `report` receives its outcome, and may be null.
 //
-// Errors: `NO_SUCH_ANCHOR`; `IMPLAUSIBLE` below -1 m or above 200 m; `DUPLICATE`; `OUT_OF_ORDER` if it is more than 0.1 s
-// older than the estimate; `NOT_FINITE`.
+// Errors: `NO_SUCH_ANCHOR`; `IMPLAUSIBLE` below -1 m or above 200 m; `DUPLICATE`; `OUT_OF_ORDER` if it is more than
+// 0.1 s older than the estimate; `NOT_FINITE`.
 kestirim_status kestirim_wheels_range(struct kestirim_wheels *tracker,
                                       const struct kestirim_range *sample,
                                       struct kestirim_range_report *report);
 
-// Takes in a sample of the wheels: what they did since the one before. Give all, in order with the ranges.
+// Processes a sample of the wheels: their motion since the preceding sample. Pass every sample, in the order of time
+// with the ranges.
 //
 // Errors: `NOT_FINITE`; `IMPLAUSIBLE` beyond 100 m/s or rad/s; `OUT_OF_ORDER`.
 kestirim_status kestirim_wheels_odometry(struct kestirim_wheels *tracker,
                                          const struct kestirim_odometry *sample);
 
-// Sets the tag's height, m.
+// Sets the height of the tag in the room frame, m.
 //
 // Errors: `NOT_FINITE`.
 kestirim_status kestirim_wheels_set_height(struct kestirim_wheels *tracker, float height);
 
-// Position of the tag, m, room: x, y.
+// Position of the tag, m, room frame: x, y.
 //
-// Errors: `NO_ESTIMATE` before the first one, or when it is lost.
+// Errors: `NO_ESTIMATE` before the first position, or while it is lost.
 kestirim_status kestirim_wheels_position(const struct kestirim_wheels *tracker,
                                          float (*position)[2]);
 
-// Standard deviation of the position at a time (µs), m: root of the sum of both axes' variances, with what the anchors'
-// constant errors add.
+// Standard deviation of the tag's position at a time (µs), m: the root of the sum of both axes' variances, including
+// the effect of the anchors' constant errors.
 //
 // Errors: `NO_ESTIMATE`.
 kestirim_status kestirim_wheels_sigma(const struct kestirim_wheels *tracker,
                                       uint64_t time_us,
                                       float *sigma);
 
-// Whether the position can be relied upon at a time (µs); `details` may be null if they are not wanted.
+// Whether the tag's position can be relied upon at a time (µs). `details` receives the health in numbers, and may be
+// null.
 kestirim_status kestirim_wheels_health(const struct kestirim_wheels *tracker,
                                        uint64_t time_us,
                                        struct kestirim_health *health,
                                        struct kestirim_tag_health *details);
 
-// By what the wheels' ways are to be multiplied.
+// Factor by which distances measured by the wheels have to be multiplied.
 //
-// Errors: `NO_ESTIMATE` before it is known.
+// Errors: `NO_ESTIMATE` before the factor is known.
 kestirim_status kestirim_wheels_scale(const struct kestirim_wheels *tracker, float *scale);
 
-// Stores the tracker in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_WHEELS_SNAPSHOT` bytes are
-// enough, `length` tells how many it took.
+// Stores the wheel tracker in a buffer, to be restored after a sleep or on another machine. `KESTIRIM_WHEELS_SNAPSHOT`
+// bytes are enough; `length` receives the number of bytes used.
 //
 // Errors: `TOO_SMALL` for the buffer.
 kestirim_status kestirim_wheels_snapshot(const struct kestirim_wheels *tracker,
@@ -1062,8 +1180,9 @@ kestirim_status kestirim_wheels_snapshot(const struct kestirim_wheels *tracker,
                                          size_t capacity,
                                          size_t *length);
 
-// Makes the tracker in memory of at least `kestirim_wheels_size()` bytes that `kestirim_wheels_snapshot` stored: it goes on
-// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+// Restores a wheel tracker from a snapshot that `kestirim_wheels_snapshot` stored, in memory of at least
+// `kestirim_wheels_size()` bytes. It continues bit for bit as if there had been no interruption. `length` may exceed
+// the snapshot, such as a whole page of flash.
 //
 // Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
 kestirim_status kestirim_wheels_restore(void *memory,

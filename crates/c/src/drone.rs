@@ -17,7 +17,7 @@ type Number = f32;
 #[cfg(feature = "fixed")]
 type Number = kestirim_scalar::Q16_16;
 
-/// Most corners of an area.
+/// Largest number of corners of a search area.
 pub const MOST_CORNERS: usize = 16;
 /// The number of measurements that are kept: evenly spaced ones of a longer flight.
 const KEPT: usize = 40;
@@ -27,9 +27,10 @@ const POINTS: usize = 500;
 /// do not meet in one point.
 const FEWEST: usize = 3;
 
-/// A search for a transmitter of unknown power over open ground, from the levels that a drone receives.
+/// A transmitter search: locates a transmitter of unknown power over open ground, from the levels that a drone
+/// receives.
 ///
-/// Places are metres in a plane (such as east and north) of one origin for drone and transmitter.
+/// Places are coordinates in a horizontal plane (such as east and north), m, with one origin for drone and transmitter.
 #[derive(Debug)]
 pub struct Drone {
     _private: [u8; 0],
@@ -42,52 +43,53 @@ impl Handle for Drone {
     const TAG: u32 = 0x6B50_4201;
 }
 
-/// Bytes that a search takes at most, on any target.
+/// Upper bound of the size of a transmitter search on any target, bytes: for static memory.
 pub const DRONE_SIZE: usize = 1024;
 const _: () = assert!(memory::size::<Drone>() <= DRONE_SIZE);
-/// Bytes that a snapshot takes at most, on any target.
+/// Upper bound of the size of a transmitter search's snapshot on any target, bytes.
 pub const DRONE_SNAPSHOT: usize = DRONE_SIZE / 4 * 5 + 64;
 
-/// A level that the drone received.
+/// A level that the drone received from the transmitter, and where.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DroneMeasurement {
-    /// Where the drone is, m: x, y.
+    /// Place of the drone, m: x, y.
     pub place: [f32; 2],
-    /// Its height above the transmitter, m.
+    /// Height of the drone above the transmitter, m.
     pub height: f32,
-    /// The level, dBm or dB of any reference, the same for all measurements.
+    /// Received level, dBm or dB relative to any reference that is the same for all measurements.
     pub level: f32,
 }
 
-/// Where the transmitter is.
+/// Estimated place of the transmitter.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DronePlace {
-    /// Its place, m: x, y.
+    /// Place of the transmitter, m: x, y.
     pub place: [f32; 2],
-    /// Standard deviation of the place: root of the sum of both axes' variances, m.
+    /// Standard deviation of the place, m: the root of the sum of both axes' variances.
     pub sigma: f32,
-    /// The level that is received a metre from it, in the measurements' unit.
+    /// Level received at one metre from the transmitter, in the measurements' unit.
     pub level: f32,
 }
 
-/// Bytes that a search takes on this target. An estimate needs 16 kB of stack on a computer, 9 kB on a microcontroller.
+/// Size of a transmitter search on this target, bytes. An estimate needs 16 kB of stack on a computer, 9 kB on a
+/// microcontroller.
 #[unsafe(no_mangle)]
 pub extern "C" fn kestirim_drone_size() -> usize {
     memory::size::<Drone>()
 }
 
-/// Alignment of its memory, bytes.
+/// Alignment of the transmitter search's memory on this target, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn kestirim_drone_align() -> usize {
     memory::align::<Drone>()
 }
 
-/// Makes a search in memory of at least `kestirim_drone_size()` bytes, in an area with these corners (x, y, m, in either
-/// sense of rotation), of which there may be `KESTIRIM_MOST_CORNERS`.
+/// Creates a transmitter search in memory of at least `kestirim_drone_size()` bytes, for an area with these corners (x,
+/// y, m, in either sense of rotation), at most `KESTIRIM_MOST_CORNERS`.
 ///
-/// Errors: `TOO_MANY`; `GEOMETRY` if the corners enclose nothing; `NOT_FINITE`.
+/// Errors: `TOO_MANY`; `GEOMETRY` if the corners enclose no area; `NOT_FINITE`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_drone_init(
     memory: *mut c_void,
@@ -108,7 +110,7 @@ pub unsafe extern "C" fn kestirim_drone_init(
     }
 }
 
-/// Takes in a measurement.
+/// Adds a measurement of the transmitter's level.
 ///
 /// Errors: `NOT_FINITE`; `INVALID_ARGUMENT` if the height is not positive; `IMPLAUSIBLE` beyond 300 dB.
 #[unsafe(no_mangle)]
@@ -126,9 +128,10 @@ pub unsafe extern "C" fn kestirim_drone_update(
     })
 }
 
-/// Computes where the transmitter is from all measurements that are kept: much work, so ask for it when it is wanted.
+/// Estimates the place of the transmitter from all measurements that are kept. This takes much computing time: call it
+/// only when a place is needed.
 ///
-/// Errors: `NO_ESTIMATE` without a measurement; `CONTRADICTORY` if nothing in the area explains them.
+/// Errors: `NO_ESTIMATE` without a measurement; `CONTRADICTORY` if no place in the area explains the measurements.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_drone_estimate(
     search: *const Drone,
@@ -150,8 +153,8 @@ pub unsafe extern "C" fn kestirim_drone_estimate(
     })
 }
 
-/// Whether an estimate can be relied upon: `DROPOUT` with fewer than three measurements. How well they determine the
-/// place, its standard deviation says.
+/// Whether an estimate of the transmitter's place can be relied upon: `DROPOUT` with fewer than three measurements. How
+/// well the measurements determine the place is shown by its standard deviation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_drone_health(
     search: *const Drone,
@@ -166,8 +169,8 @@ pub unsafe extern "C" fn kestirim_drone_health(
     })
 }
 
-/// Stores the search in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_DRONE_SNAPSHOT` bytes are
-/// enough, `length` tells how many it took.
+/// Stores the transmitter search in a buffer, to be restored after a sleep or on another machine.
+/// `KESTIRIM_DRONE_SNAPSHOT` bytes are enough; `length` receives the number of bytes used.
 ///
 /// Errors: `TOO_SMALL` for the buffer.
 #[unsafe(no_mangle)]
@@ -181,8 +184,9 @@ pub unsafe extern "C" fn kestirim_drone_snapshot(
     unsafe { memory::snapshot(search, buffer, capacity, length) }
 }
 
-/// Makes the search in memory of at least `kestirim_drone_size()` bytes that `kestirim_drone_snapshot` stored: it goes on
-/// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+/// Restores a transmitter search from a snapshot that `kestirim_drone_snapshot` stored, in memory of at least
+/// `kestirim_drone_size()` bytes. It continues bit for bit as if there had been no interruption. `length` may exceed
+/// the snapshot, such as a whole page of flash.
 ///
 /// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
 #[unsafe(no_mangle)]

@@ -1,4 +1,4 @@
-//! Where a GNSS receiver is: the filter of precise point positioning of `kestirim-ppp-filter`.
+//! The position of a GNSS receiver, by the filter of precise point positioning of `kestirim-ppp-filter`.
 #![allow(unsafe_code)] // Functions that C calls: symbols of its own, and pointers, which `memory` checks.
 
 use core::ffi::c_void;
@@ -17,21 +17,21 @@ use crate::memory::{
 };
 use crate::{Health, Status};
 
-/// Most satellites of an epoch.
+/// Largest number of satellites in an epoch.
 pub const MOST_SATELLITES: usize = 12;
 const STATES: usize = states(MOST_SATELLITES);
 
-/// A filter of precise point positioning: where a receiver is, to a centimetre, from its dual-frequency observations and
-/// from orbits and clocks of a service. Double precision: for processors with memory.
+/// A GNSS filter: precise point positioning of a receiver, to a centimetre, from its dual-frequency observations and
+/// the orbits and clocks of a service. It computes in double precision, for processors with enough memory.
 ///
-/// Frame: Earth-centred and Earth-fixed (ECEF, that of the orbits), m; deviations to the east, north and up. Time is GPS
-/// time.
+/// Frame: Earth-centred, Earth-fixed (ECEF, that of the orbits), m; standard deviations are to the east, north and up.
+/// Times are in GPS time.
 #[derive(Debug)]
 pub struct Gnss {
     _private: [u8; 0],
 }
 
-/// What the memory holds.
+/// The contents of the memory.
 #[derive(serde::Serialize, serde::Deserialize)]
 pub(crate) struct Positioning {
     filter: PppFilter<STATES>,
@@ -41,7 +41,7 @@ pub(crate) struct Positioning {
 }
 
 layout! {
-    [] for Positioning as "c/gnss", 3, f64, [STATES]
+    [] for Positioning as "c/gnss", 4, f64, [STATES]
 }
 
 impl Handle for Gnss {
@@ -49,25 +49,28 @@ impl Handle for Gnss {
     const TAG: u32 = 0x6B50_4701;
 }
 
-/// Bytes that a filter takes at most, on any target.
+/// Upper bound of the size of a GNSS filter on any target, bytes: for static memory.
 pub const GNSS_SIZE: usize = 10240;
 const _: () = assert!(memory::size::<Gnss>() <= GNSS_SIZE);
-/// Bytes that a snapshot takes at most, on any target.
+/// Upper bound of the size of a GNSS filter's snapshot on any target, bytes.
 pub const GNSS_SNAPSHOT: usize = GNSS_SIZE / 4 * 5 + 64;
 
-/// Settings of the filter.
+/// Settings of a GNSS filter.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GnssConfig {
-    /// 0: the receiver is at rest. Above: it moves, and this is the variance that a second adds to each coordinate, m²/s
-    /// (1e4 for anything).
+    /// Process noise of a moving receiver: the variance added to each coordinate per second, m²/s (1e4 for any motion).
+    /// 0 for a receiver at rest.
     pub process_noise: f64,
-    /// Lowest elevation of a satellite, rad; 0.14 is 8 degrees.
+    /// Elevation mask, rad: lower satellites are not used. 0.14 is 8 degrees.
     pub elevation_mask: f64,
-    /// UT1 (or UTC) minus GPS time, s: the leap seconds since 1980, negated; -18 since 2017.
+    /// UT1 (or UTC) minus GPS time, s: the negative number of leap seconds since 1980, -18 since 2017.
     pub ut1_minus_gps: f64,
-    /// From the marker to the antenna's reference point, m: east, north, up.
+    /// Vector from the marker to the antenna's reference point, m: east, north, up.
     pub eccentricity: [f64; 3],
+    /// Source of orbits and clocks: 0 for a service, 1 for the satellites' broadcast ephemerides
+    /// (`kestirim_gnss_broadcast_at`), whose errors persist for hours.
+    pub broadcast: u8,
 }
 
 /// An instant in GPS time.
@@ -86,30 +89,32 @@ impl GnssTime {
     }
 }
 
-/// The phase centre of an antenna on one frequency, as an ANTEX file describes it.
+/// Phase centre of an antenna on one frequency, as an ANTEX file describes it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct GnssPattern {
-    /// Mean phase centre from the antenna's reference point, m: north, east, up of a receiver's; X, Y, Z of a satellite's.
+    /// Mean phase centre, m: for a receiver's antenna north, east and up of its reference point; for a satellite's
+    /// along X, Y and Z of its body.
     pub offset: [f64; 3],
-    /// First zenith or nadir angle of the grid, degrees.
+    /// First angle of the grid, degrees: from the zenith (receiver) or nadir (satellite).
     pub first: f64,
-    /// Step of the grid, degrees.
+    /// Step of the grid's zenith or nadir angles, degrees.
     pub step: f64,
-    /// Phase centre variation at each angle, whatever the azimuth, m: `count` numbers.
+    /// Azimuth-independent phase centre variation at each angle of the grid, m: `count` numbers.
     pub mean: *const f64,
-    /// How many angles the grid has.
+    /// Number of angles of the grid.
     pub count: usize,
-    /// Step of the azimuths, degrees; 0 without them.
+    /// Step of the azimuths, degrees; 0 if the grid has none.
     pub azimuth_step: f64,
-    /// A row like `mean` for each azimuth from 0 to 360 degrees, one after the other, m.
+    /// Phase centre variations that depend on the azimuth, m: a row like `mean` for each azimuth from 0 to 360 degrees,
+    /// one after the other.
     pub by_azimuth: *const f64,
-    /// How many numbers all these rows have; 0 without them.
+    /// Total number of values in `by_azimuth`; 0 if the grid has no azimuths.
     pub azimuth_count: usize,
 }
 
 impl GnssPattern {
-    /// The same for the models.
+    /// The pattern in the form of the models.
     ///
     /// # Safety
     /// Its pointers may be read.
@@ -122,7 +127,7 @@ impl GnssPattern {
     }
 }
 
-/// Carriers on which a satellite is observed.
+/// Pairs of carriers on which a satellite can be observed.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GnssCarriers {
@@ -142,63 +147,66 @@ pub enum GnssCarriers {
     B1cB2a = 6,
 }
 
-/// A satellite at the time of transmission.
+/// State of a satellite at the time of transmission.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GnssSatellite {
-    /// Centre of mass, ECEF at that time, m.
+    /// Position of the centre of mass, ECEF at the time of transmission, m; with broadcast ephemerides that of the
+    /// antenna's phase centre.
     pub position: [f64; 3],
-    /// Velocity, m/s.
+    /// Velocity of the satellite, m/s, inertial or relative to the Earth.
     pub velocity: [f64; 3],
-    /// Satellite clock minus GPS time, s, without the effect of its eccentric orbit.
+    /// Satellite clock minus GPS time, s, without the relativistic effect of the eccentric orbit.
     pub clock: f64,
-    /// Time from the clock's sample before to that after, s; 0: not interpolated.
+    /// Interval between the two clock samples around the time of transmission, s; 0 if the clock is not interpolated.
     pub clock_interval: f64,
-    /// Time to the nearer of both, s.
+    /// Time to the nearer of the two clock samples, s.
     pub clock_distance: f64,
+    /// Standard deviation of a range due to this orbit and clock, m, as the satellite broadcasts it; 0 for a service's.
+    pub accuracy: f64,
 }
 
-/// Observation of one satellite.
+/// Observation of one satellite by the receiver in an epoch.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct GnssObservation {
-    /// Number of the satellite, which no other has: a GPS satellite's PRN, a Galileo satellite's number and 100, say.
+    /// Number of the satellite, unique among all systems: for example the PRN for GPS, 100 plus the number for Galileo.
     pub satellite: u8,
     /// 1 if the receiver reports a loss of lock since the last epoch, else 0.
     pub lock_lost: u8,
-    /// The channel of a satellite of GLONASS, -7 to 6; 0 of others.
+    /// Frequency channel of a GLONASS satellite, -7 to 6; 0 for other systems.
     pub channel: i8,
-    /// Its two carriers: a `kestirim_gnss_carriers`.
+    /// The two observed carriers: a `kestirim_gnss_carriers`.
     pub carriers: u32,
-    /// Codes on both, m.
+    /// Code observations (pseudoranges) on both carriers, m.
     pub code: [f64; 2],
-    /// Carrier phases on both, cycles.
+    /// Carrier phases on both carriers, cycles.
     pub phase: [f64; 2],
-    /// The satellite.
+    /// State of the satellite at the time of transmission.
     pub state: GnssSatellite,
-    /// Its antenna on both carriers: two patterns, or null if they are not known.
+    /// Antenna of the satellite on both carriers: two patterns, or null if they are unknown.
     pub antenna: *const [GnssPattern; 2],
 }
 
-/// Solution of one epoch.
+/// Solution of a GNSS filter for one epoch.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct GnssSolution {
-    /// The marker, ECEF, m, free of tides.
+    /// Position of the marker, ECEF, m, free of tides.
     pub position: [f64; 3],
-    /// Standard deviations to the east, north and up, m.
+    /// Standard deviations of the position to the east, north and up, m.
     pub sigma: [f64; 3],
     /// Receiver clock minus GPS time, m.
     pub clock: f64,
-    /// Wet zenith delay, m.
+    /// Wet zenith delay of the troposphere, m.
     pub wet_delay: f64,
-    /// Whether it can be relied upon.
+    /// Whether the solution can be relied upon.
     pub health: Health,
-    /// 1 if the ambiguities are known, so that the position is better than 10 cm, else 0.
+    /// 1 if the ambiguities are known: the standard deviation of the position is below 10 cm; else 0.
     pub converged: u8,
-    /// Satellites above the elevation mask.
+    /// Number of satellites above the elevation mask.
     pub satellites: u8,
-    /// Observations (codes and phases) that had less than their full weight.
+    /// Number of observations (codes and phases) that had less than their full weight.
     pub treated: u8,
 }
 
@@ -223,20 +231,26 @@ impl GnssSolution {
 
 impl Positioning {
     fn new(config: &GnssConfig) -> Result<Self, Status> {
-        let GnssConfig { process_noise, elevation_mask, ut1_minus_gps, eccentricity } = *config;
+        let GnssConfig { process_noise, elevation_mask, ut1_minus_gps, eccentricity, broadcast } =
+            *config;
         let numbers = [process_noise, elevation_mask, ut1_minus_gps];
         if !numbers.iter().chain(&eccentricity).all(|number| number.is_finite()) {
             return Err(Status::NotFinite);
         }
         let motion =
             if process_noise > 0.0 { Motion::Kinematic { process_noise } } else { Motion::Static };
-        // All room is for satellites.
-        let config = Config { elevation_mask, gradient: 0.0, ..Config::new(motion) };
+        let config = match broadcast {
+            0 => Config::new(motion),
+            1 => Config::broadcast(motion),
+            _ => return Err(Status::InvalidArgument),
+        };
+        // All states are reserved for satellites.
+        let config = Config { elevation_mask, gradient: 0.0, ..config };
         Ok(Self { filter: PppFilter::new(config), ut1_minus_gps, eccentricity, last: None })
     }
 }
 
-/// Two patterns behind a pointer that may be null.
+/// Two antenna patterns behind a pointer that may be null.
 ///
 /// # Safety
 /// It and the pointers of the patterns may be read.
@@ -250,26 +264,33 @@ unsafe fn antenna<'a>(
     }
 }
 
+/// The carriers of a `kestirim_gnss_carriers`; `channel` is that of a GLONASS satellite.
+pub(crate) const fn carriers(number: u32, channel: i8) -> Result<Carriers, Status> {
+    Ok(match number {
+        0 => Carriers::L1L2,
+        1 => Carriers::E1E5a,
+        2 => Carriers::E1E5b,
+        3 if channel >= -7 && channel <= 6 => Carriers::G1G2 { channel },
+        4 => Carriers::B1B3,
+        5 => Carriers::B1B2,
+        6 => Carriers::B1cB2a,
+        _ => return Err(Status::InvalidArgument),
+    })
+}
+
 impl GnssObservation {
-    /// The same for the filter.
+    /// The observation in the form of the filter.
     ///
     /// # Safety
     /// The pointer to its antenna may be read.
     unsafe fn observation<'a>(&self) -> Result<SatelliteObservation<'a>, Status> {
-        let carriers = match self.carriers {
-            0 => Carriers::L1L2,
-            1 => Carriers::E1E5a,
-            2 => Carriers::E1E5b,
-            3 if (-7..=6).contains(&self.channel) => Carriers::G1G2 { channel: self.channel },
-            4 => Carriers::B1B3,
-            5 => Carriers::B1B2,
-            6 => Carriers::B1cB2a,
-            _ => return Err(Status::InvalidArgument),
-        };
         let state = &self.state;
+        if !state.accuracy.is_finite() || state.accuracy < 0.0 {
+            return Err(Status::InvalidArgument);
+        }
         Ok(SatelliteObservation {
             satellite: self.satellite,
-            carriers,
+            carriers: carriers(self.carriers, self.channel)?,
             code: self.code,
             phase: self.phase,
             lock_lost: self.lock_lost != 0,
@@ -279,7 +300,7 @@ impl GnssObservation {
                 clock: state.clock,
                 clock_interval: state.clock_interval,
                 clock_distance: state.clock_distance,
-                accuracy: 0.0,
+                accuracy: state.accuracy,
             },
             // SAFETY: the caller keeps what the header asks for.
             antenna: unsafe { antenna(self.antenna)? },
@@ -287,21 +308,21 @@ impl GnssObservation {
     }
 }
 
-/// Bytes that a filter takes on this target. An epoch needs 96 kB of stack at most.
+/// Size of a GNSS filter on this target, bytes. An epoch needs at most 96 kB of stack.
 #[unsafe(no_mangle)]
 pub extern "C" fn kestirim_gnss_size() -> usize {
     memory::size::<Gnss>()
 }
 
-/// Alignment of its memory, bytes.
+/// Alignment of the GNSS filter's memory on this target, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn kestirim_gnss_align() -> usize {
     memory::align::<Gnss>()
 }
 
-/// Makes a filter in memory of at least `kestirim_gnss_size()` bytes, before its first epoch: it starts by itself.
+/// Creates a GNSS filter in memory of at least `kestirim_gnss_size()` bytes. It finds its first position by itself.
 ///
-/// Errors: `NOT_FINITE`.
+/// Errors: `NOT_FINITE`; `INVALID_ARGUMENT`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_gnss_init(
     memory: *mut c_void,
@@ -313,13 +334,13 @@ pub unsafe extern "C" fn kestirim_gnss_init(
     unsafe { memory::init(memory, size, filter, || Positioning::new(&argument(config)?)) }
 }
 
-/// Takes in an epoch, observed at `time` by the receiver's clock: up to `KESTIRIM_MOST_SATELLITES` complete observations. The clock
-/// of each system beside GPS takes the room of one: what there is no room for is left out.
-/// `receiver` is the receiver's antenna on L1 and L2, two patterns, or null if it is not known; for the carriers of
-/// other systems it serves as well. `solution` may be null if it is not wanted. Tides of the ocean are not corrected for.
+/// Processes an epoch, observed at `time` by the receiver's clock: up to `KESTIRIM_MOST_SATELLITES` complete
+/// observations. The clock of each system other than GPS takes the room of one satellite; satellites without room are
+/// left out. `receiver` is the receiver's antenna on L1 and L2, two patterns, or null if it is unknown; it is also used
+/// for the carriers of other systems. `solution` may be null. Ocean loading and the pole tide are not corrected for.
 ///
 /// Errors: `TOO_FEW` satellites; `TOO_MANY`; `GEOMETRY`; `OUT_OF_ORDER`; `CONTRADICTORY`; `NOT_FINITE`;
-/// `INVALID_ARGUMENT` of carriers, a channel or settings.
+/// `INVALID_ARGUMENT` for carriers, a channel, an accuracy or settings.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_gnss_update(
     filter: *mut Gnss,
@@ -359,9 +380,9 @@ pub unsafe extern "C" fn kestirim_gnss_update(
     })
 }
 
-/// The marker in the last epoch that had a solution, ECEF, m.
+/// Position of the marker in the last epoch that had a solution, ECEF, m.
 ///
-/// Errors: `NO_ESTIMATE`.
+/// Errors: `NO_ESTIMATE` before the first solution.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_gnss_position(
     filter: *const Gnss,
@@ -375,9 +396,9 @@ pub unsafe extern "C" fn kestirim_gnss_position(
     })
 }
 
-/// Its standard deviations to the east, north and up, m.
+/// Standard deviations of the marker's position to the east, north and up, in the last epoch that had a solution, m.
 ///
-/// Errors: `NO_ESTIMATE`.
+/// Errors: `NO_ESTIMATE` before the first solution.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_gnss_sigma(filter: *const Gnss, sigma: *mut [f64; 3]) -> Status {
     status(|| {
@@ -388,10 +409,11 @@ pub unsafe extern "C" fn kestirim_gnss_sigma(filter: *const Gnss, sigma: *mut [f
     })
 }
 
-/// Whether it can be relied upon: `NOT_OBSERVABLE` where hardly more is observed than is unknown, `INNOVATIONS` where the
-/// observations contradict the solution or each other, with `REJECTED` if too many were left out.
+/// Whether the last solution can be relied upon. Reasons why not: `NOT_OBSERVABLE` if hardly more observations are left
+/// than unknowns; `INNOVATIONS` if the observations contradict the solution, each other or earlier solutions, together
+/// with `REJECTED` if too many were rejected.
 ///
-/// Errors: `NO_ESTIMATE`.
+/// Errors: `NO_ESTIMATE` before the first solution.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_gnss_health(filter: *const Gnss, health: *mut Health) -> Status {
     status(|| {
@@ -402,8 +424,8 @@ pub unsafe extern "C" fn kestirim_gnss_health(filter: *const Gnss, health: *mut 
     })
 }
 
-/// Stores the filter in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_GNSS_SNAPSHOT` bytes are
-/// enough, `length` tells how many it took.
+/// Stores the GNSS filter in a buffer, to be restored after a sleep or on another machine. `KESTIRIM_GNSS_SNAPSHOT`
+/// bytes are enough; `length` receives the number of bytes used.
 ///
 /// Errors: `TOO_SMALL` for the buffer.
 #[unsafe(no_mangle)]
@@ -417,8 +439,9 @@ pub unsafe extern "C" fn kestirim_gnss_snapshot(
     unsafe { memory::snapshot(filter, buffer, capacity, length) }
 }
 
-/// Makes the filter in memory of at least `kestirim_gnss_size()` bytes that `kestirim_gnss_snapshot` stored: it goes on
-/// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+/// Restores a GNSS filter from a snapshot that `kestirim_gnss_snapshot` stored, in memory of at least
+/// `kestirim_gnss_size()` bytes. It continues bit for bit as if there had been no interruption. `length` may exceed
+/// the snapshot, such as a whole page of flash.
 ///
 /// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
 #[unsafe(no_mangle)]

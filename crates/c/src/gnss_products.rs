@@ -1,4 +1,4 @@
-//! Where a satellite was when it sent: precise orbits and clocks.
+//! The state of a satellite at the transmission of a signal, from precise orbits and clocks.
 #![allow(unsafe_code)] // A function that C calls: a symbol of its own, and pointers, which `memory` checks.
 
 use heapless::Vec;
@@ -10,18 +10,18 @@ use nalgebra::Vector3;
 use crate::memory::{argument, array, place, status};
 use crate::{GnssSatellite, GnssTime, Status};
 
-/// Most samples of an orbit or a clock: four hours of an orbit every quarter of an hour.
+/// Largest number of samples of an orbit or a clock: four hours of an orbit with a sample every quarter of an hour.
 pub const MOST_PRODUCTS: usize = 16;
-/// The longest gap between samples of a clock that is bridged, s.
+/// The longest gap between samples of a clock that is interpolated over, s.
 const LONGEST_GAP: f64 = 900.0;
 
 /// One sample of a satellite's precise orbit (SP3).
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GnssOrbitSample {
-    /// Its time.
+    /// Time of the sample.
     pub time: GnssTime,
-    /// Centre of mass, ECEF at that time, m.
+    /// Position of the satellite's centre of mass, ECEF at the time of the sample, m.
     pub position: [f64; 3],
 }
 
@@ -29,7 +29,7 @@ pub struct GnssOrbitSample {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GnssClockSample {
-    /// Its time.
+    /// Time of the sample.
     pub time: GnssTime,
     /// Satellite clock minus GPS time, s.
     pub bias: f64,
@@ -60,11 +60,12 @@ fn clock_of(
     Ok(all)
 }
 
-/// Where a satellite was when it sent what was received at `time` by the receiver's clock, with this code (m): by the
-/// polynomial through eleven samples of its orbit, and the line between two of its clock. Samples are in the order of
-/// time, evenly spaced ones of the orbit, `KESTIRIM_MOST_PRODUCTS` of either at most.
+/// State of a satellite at the transmission of a signal, from its precise orbit and clock. `time` is the time of
+/// reception by the receiver's clock, `code` the code observation (m). The orbit is interpolated by the polynomial
+/// through eleven samples, the clock linearly between two. Samples are in the order of time, those of the orbit evenly
+/// spaced, at most `KESTIRIM_MOST_PRODUCTS` of each.
 ///
-/// Errors: `GAP` if the samples do not cover that time; `TOO_MANY`; `NOT_FINITE`.
+/// Errors: `GAP` if the samples do not cover the time of transmission; `TOO_MANY`; `NOT_FINITE`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_gnss_satellite_at(
     time: *const GnssTime,
@@ -91,7 +92,8 @@ pub unsafe extern "C" fn kestirim_gnss_satellite_at(
         let received = time.instant();
         let reference = GpsTime::new(received.day(), 0.0);
         let (orbit, clock) = (orbit_of(orbit, reference)?, clock_of(clock, reference)?);
-        // By the satellite's own clock; it is off by less than a millisecond, in which it loses nothing.
+        // By the satellite's own clock, which is off by less than a millisecond; the clock does not change noticeably
+        // within that.
         let sent = received.plus(-code / SPEED_OF_LIGHT);
         let clock = Clock { reference, samples: &clock, longest_gap: LONGEST_GAP };
         let clock = clock.at(sent).ok_or(Status::Gap)?;
@@ -103,6 +105,7 @@ pub unsafe extern "C" fn kestirim_gnss_satellite_at(
             clock: clock.bias,
             clock_interval: clock.interval,
             clock_distance: clock.distance,
+            accuracy: 0.0,
         });
         Ok(())
     })

@@ -1,34 +1,34 @@
 use kestirim_health::Reason;
 
-/// How far an estimate can be relied upon.
+/// Degree to which an estimate can be relied upon.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum State {
-    /// As its standard deviation says.
+    /// The estimate is as good as its standard deviation says.
     Good = 0,
-    /// Worse than with better data; what is said of its accuracy still holds, more or less.
+    /// The estimate is worse than with better data; its stated accuracy still holds approximately.
     Degraded = 1,
-    /// It may be wrong by far more than anything says: not to be relied upon.
+    /// The estimate may be wrong by far more than its stated accuracy: do not rely on it.
     Bad = 2,
 }
 
-/// Bits of `kestirim_health.reasons`: why an estimate is not good.
+/// Reasons why an estimate is not good: the bits of `kestirim_health.reasons`.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HealthReason {
-    /// A sensor was at its end.
+    /// A sensor reached the end of its range.
     Saturated = 1,
-    /// A sensor repeated itself.
+    /// A sensor keeps repeating the same value.
     Stuck = 1 << 1,
-    /// Data are missing, or too few.
+    /// Data are missing, or there are too few.
     Dropout = 1 << 2,
-    /// More measurements than usual contradict the estimate and were left out.
+    /// More measurements than usual contradict the estimate and were rejected.
     Rejected = 1 << 3,
-    /// What the estimate needs cannot be seen in the data.
+    /// A quantity that the estimate needs is not observable in the data.
     NotObservable = 1 << 4,
-    /// Times run too fast or too slow, or products belong to another time.
+    /// Time stamps run too fast or too slow, some data are later than others, or products belong to another time.
     Time = 1 << 5,
-    /// Data seem to be in another unit, or of another sign.
+    /// Data seem to be in another unit or to have another sign.
     Units = 1 << 6,
     /// Axes seem to be swapped or mirrored.
     Axes = 1 << 7,
@@ -36,11 +36,11 @@ pub enum HealthReason {
     Geometry = 1 << 8,
     /// One anchor, or two that seem swapped, contradict the others.
     Anchor = 1 << 9,
-    /// The height that was said contradicts the measurements.
+    /// The height that was given contradicts the measurements.
     Height = 1 << 10,
-    /// What is left of the measurements is beyond its bound.
+    /// The innovations of the measurements exceed their bound.
     Innovations = 1 << 11,
-    /// The estimate left the range of its numbers.
+    /// The estimate left the range of its number format.
     Range = 1 << 12,
 }
 
@@ -48,13 +48,13 @@ pub enum HealthReason {
 const _: () = assert!(1 << (Reason::ALL.len() - 1) == HealthReason::Range as u32);
 const _: () = assert!(1 << Reason::NotObservable as u32 == HealthReason::NotObservable as u32);
 
-/// Whether an estimate can be relied upon, and all reasons why not.
+/// Whether an estimate can be relied upon, and all reasons why it cannot.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Health {
-    /// How far: the state of the worst reason.
+    /// Degree to which it can be relied upon: the state of the worst reason.
     pub state: State,
-    /// A bit a reason: see `kestirim_health_reason`.
+    /// The reasons, one bit each: `kestirim_reason`.
     pub reasons: u32,
 }
 

@@ -3,6 +3,7 @@
 
 mod drone;
 mod gnss;
+mod gnss_broadcast;
 mod gnss_products;
 mod health;
 mod memory;
@@ -15,6 +16,7 @@ mod wheels;
 
 pub use drone::*;
 pub use gnss::*;
+pub use gnss_broadcast::*;
 pub use gnss_products::*;
 pub use health::*;
 pub use pedestrian::*;
@@ -28,13 +30,13 @@ use core::mem::MaybeUninit;
 
 use kestirim_scalar::Scalar;
 
-/// Numbers as C has them.
+/// Converts numbers to C's `float`.
 fn floats<T: Scalar, const N: usize>(numbers: &[T; N]) -> [f32; N] {
     numbers.map(T::to_f32)
 }
 
-/// Writes numbers as C has them. A call of its own, where the compiler knows both places apart: inlined, it links
-/// `memmove`.
+/// Writes numbers as C's `float`. Never inlined, so that the compiler knows that the two places are distinct: otherwise
+/// it links `memmove`.
 #[inline(never)]
 fn write<T: Scalar, const N: usize>(place: &mut MaybeUninit<[f32; N]>, numbers: &[T; N]) {
     place.write(floats(numbers));

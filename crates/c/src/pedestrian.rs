@@ -18,10 +18,10 @@ type Number = f32;
 #[cfg(feature = "fixed")]
 type Number = kestirim_scalar::Q12_20;
 
-/// The pedestrian's tracker: where an IMU on a foot is, from what it measures.
+/// A pedestrian tracker: estimates the path of a walking foot from the IMU on it.
 ///
-/// Frames: `body` is the IMU's axes, right-handed. `earth` has z up; its origin is where the foot stood first, its
-/// heading the one it had then.
+/// Frames: `body` has the IMU's axes, right-handed. `earth` has z up; its origin and its heading are those of the
+/// sensor when the foot first stood.
 #[derive(Debug)]
 pub struct Pedestrian {
     _private: [u8; 0],
@@ -44,29 +44,30 @@ impl Handle for Pedestrian {
     const TAG: u32 = 0x6B50_4401;
 }
 
-/// Bytes that a pedestrian's tracker takes at most, on any target: for memory that is set aside by the compiler.
+/// Upper bound of the size of a pedestrian tracker on any target, bytes: for static memory.
 pub const PEDESTRIAN_SIZE: usize = 2048;
 const _: () = assert!(memory::size::<Pedestrian>() <= PEDESTRIAN_SIZE);
-/// Bytes that a snapshot takes at most, on any target.
+/// Upper bound of the size of a pedestrian tracker's snapshot on any target, bytes.
 pub const PEDESTRIAN_SNAPSHOT: usize = PEDESTRIAN_SIZE / 4 * 5 + 64;
 
 /// Class of an IMU.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sensor {
-    /// A calibrated unit (`MicroStrain`, Xsens, NGIMU): its gyroscope starts within 3 mrad/s of zero.
+    /// Calibrated unit (`MicroStrain`, Xsens, NGIMU): its gyroscope starts within 3 mrad/s of zero.
     Industrial = 0,
-    /// A bare chip (MPU-6050, MPU-9250, BNO055, LSM6DS): its gyroscope may start 0.1 rad/s off.
+    /// Bare chip (MPU-6050, MPU-9250, BNO055, LSM6DS): its gyroscope may start 0.1 rad/s off.
     Consumer = 1,
 }
 
-/// Settings of sensor and foot.
+/// Settings of a pedestrian tracker: the sensor and its mounting on the foot.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PedestrianConfig {
     /// Class of the IMU: a `kestirim_sensor`.
     pub sensor: u32,
-    /// Height of the sensor above the ball of the foot, about which the foot rolls, m. 0 takes it for motionless.
+    /// Height of the sensor above the ball of the foot, about which the foot rolls in stance, m. 0 treats a standing
+    /// foot as motionless.
     pub contact_height: f32,
 }
 
@@ -74,11 +75,11 @@ pub struct PedestrianConfig {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PedestrianSample {
-    /// Time of the sample, µs since any moment.
+    /// Time of the sample, µs since any epoch.
     pub time_us: u64,
-    /// Specific force, as an accelerometer measures it, m/s², body: +9.8 upwards at rest.
+    /// Specific force, as an accelerometer measures it, m/s², body frame: +9.8 upwards at rest.
     pub specific_force: [f32; 3],
-    /// Angular rate, as a gyroscope measures it, rad/s, body.
+    /// Angular rate, as a gyroscope measures it, rad/s, body frame.
     pub angular_rate: [f32; 3],
 }
 
@@ -86,35 +87,35 @@ pub struct PedestrianSample {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PedestrianStride {
-    /// End of the stance it arrived at, µs, the samples' clock.
+    /// End of the stance at which the stride arrived, µs on the samples' clock.
     pub time_us: u64,
-    /// Where that is, m, earth.
+    /// Position of the stance at which the stride arrived, m, earth frame.
     pub position: [f32; 3],
-    /// Horizontal distance from the stance before, m.
+    /// Horizontal distance from the preceding stance, m.
     pub length: f32,
-    /// Time since the end of the stance before, s.
+    /// Time since the end of the preceding stance, s.
     pub duration: f32,
-    /// Turn of its direction from that of the stride before, rad, anticlockwise from above; 0 of the first.
+    /// Change of direction from the preceding stride, rad, anticlockwise from above; 0 for the first stride.
     pub heading_change: f32,
 }
 
-/// Estimate after a sample.
+/// Estimate of the foot's state after a sample.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PedestrianState {
-    /// Time of the sample, µs.
+    /// Time of the sample, µs on the samples' clock.
     pub time_us: u64,
-    /// Position of the sensor, m, earth.
+    /// Position of the sensor, m, earth frame.
     pub position: [f32; 3],
-    /// Velocity of the sensor, m/s, earth.
+    /// Velocity of the sensor, m/s, earth frame.
     pub velocity: [f32; 3],
-    /// Orientation of the sensor, body to earth: quaternion w, x, y, z.
+    /// Orientation of the sensor, from the body to the earth frame: quaternion w, x, y, z.
     pub orientation: [f32; 4],
     /// 1 if the foot stands, else 0.
     pub stance: u8,
-    /// 1 if this sample completed a stride, which is `stride`, else 0.
+    /// 1 if this sample completed a stride, described by `stride`; else 0.
     pub has_stride: u8,
-    /// The stride, if there is one; else zeros.
+    /// The completed stride; zeros if `has_stride` is 0.
     pub stride: PedestrianStride,
 }
 
@@ -162,20 +163,20 @@ impl Walk {
     }
 }
 
-/// Bytes that a tracker takes on this target.
+/// Size of a pedestrian tracker on this target, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn kestirim_pedestrian_size() -> usize {
     memory::size::<Pedestrian>()
 }
 
-/// Alignment of its memory, bytes.
+/// Alignment of the pedestrian tracker's memory on this target, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn kestirim_pedestrian_align() -> usize {
     memory::align::<Pedestrian>()
 }
 
-/// Makes a tracker in memory of at least `kestirim_pedestrian_size()` bytes, before its first sample. `tracker` is its
-/// handle from then on, and there is nothing to be freed.
+/// Creates a pedestrian tracker in memory of at least `kestirim_pedestrian_size()` bytes. `tracker` receives its
+/// handle; nothing has to be freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_pedestrian_init(
     memory: *mut c_void,
@@ -187,11 +188,11 @@ pub unsafe extern "C" fn kestirim_pedestrian_init(
     unsafe { memory::init(memory, size, tracker, || Walk::new(argument(config)?)) }
 }
 
-/// Takes the next sample.
+/// Processes the next sample of the foot's IMU.
 ///
-/// A sample with the time of the last is taken for one that was sent twice and changes nothing.
+/// A sample with the time of the last one counts as a repetition and changes nothing.
 ///
-/// Errors: `NOT_FINITE`; `IMPLAUSIBLE` beyond 1000 g or 100000 degrees a second; `OUT_OF_ORDER`.
+/// Errors: `NOT_FINITE`; `IMPLAUSIBLE` beyond 1000 g or 100000 degrees per second; `OUT_OF_ORDER`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_pedestrian_update(
     tracker: *mut Pedestrian,
@@ -213,7 +214,7 @@ pub unsafe extern "C" fn kestirim_pedestrian_update(
     })
 }
 
-/// The whole estimate after the last sample.
+/// The complete estimate of the foot's state after the last sample.
 ///
 /// Errors: `NO_ESTIMATE` before the first sample.
 #[unsafe(no_mangle)]
@@ -238,7 +239,7 @@ pub unsafe extern "C" fn kestirim_pedestrian_now(
     })
 }
 
-/// Ends the walk: writes the stride that led to the stance the foot is in; `stride` may be null.
+/// Ends the walk: completes the stride that led to the present stance, and writes it to `stride`, which may be null.
 ///
 /// Errors: `NO_ESTIMATE` if there is no such stride.
 #[unsafe(no_mangle)]
@@ -257,7 +258,7 @@ pub unsafe extern "C" fn kestirim_pedestrian_finish(
     })
 }
 
-/// Position of the sensor after the last sample, m, earth: x, y, z. Zeros until the foot has stood.
+/// Position of the foot's sensor after the last sample, m, earth frame: x, y, z. Zeros until the foot has stood.
 ///
 /// Errors: `NO_ESTIMATE` before the first sample.
 #[unsafe(no_mangle)]
@@ -274,7 +275,7 @@ pub unsafe extern "C" fn kestirim_pedestrian_position(
     })
 }
 
-/// Standard deviations of the position, m, earth: x, y, z; those after the last stride.
+/// Standard deviations of the foot's position after the last stride, m, earth frame: x, y, z.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_pedestrian_sigma(
     tracker: *const Pedestrian,
@@ -288,7 +289,7 @@ pub unsafe extern "C" fn kestirim_pedestrian_sigma(
     })
 }
 
-/// The horizontal path walked, from stance to stance, m.
+/// Length of the horizontal path walked so far, from stance to stance, m.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_pedestrian_path_length(
     tracker: *const Pedestrian,
@@ -302,9 +303,11 @@ pub unsafe extern "C" fn kestirim_pedestrian_path_length(
     })
 }
 
-/// Whether the path can be relied upon. `NOT_OBSERVABLE` stands there until the foot has stood still for half a
-/// second, `SATURATED` if a sensor's range is too small, `UNITS` if g or degrees came for m/s² or rad, `AXES` if they
-/// are swapped between the two sensors, `DROPOUT` after gaps, `INNOVATIONS` if strides end with too large a velocity.
+/// Whether the path can be relied upon. Reasons why not: `NOT_OBSERVABLE` until the foot has stood still for half a
+/// second; `SATURATED` if a sensor's range is too small; `UNITS` if values seem to be in g or degrees instead of m/s²
+/// or rad, or the accelerometer needs calibration; `AXES` if axes are swapped between the two sensors; `DROPOUT` after
+/// gaps or if the tilt was lost; `INNOVATIONS` if strides end with too large a velocity or jump; `RANGE` if the path
+/// exceeds the range of the number format.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_pedestrian_health(
     tracker: *const Pedestrian,
@@ -318,8 +321,8 @@ pub unsafe extern "C" fn kestirim_pedestrian_health(
     })
 }
 
-/// Stores the tracker in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_PEDESTRIAN_SNAPSHOT` bytes are
-/// enough, `length` tells how many it took.
+/// Stores the pedestrian tracker in a buffer, to be restored after a sleep or on another machine.
+/// `KESTIRIM_PEDESTRIAN_SNAPSHOT` bytes are enough; `length` receives the number of bytes used.
 ///
 /// Errors: `TOO_SMALL` for the buffer.
 #[unsafe(no_mangle)]
@@ -333,8 +336,9 @@ pub unsafe extern "C" fn kestirim_pedestrian_snapshot(
     unsafe { memory::snapshot(tracker, buffer, capacity, length) }
 }
 
-/// Makes the tracker in memory of at least `kestirim_pedestrian_size()` bytes that `kestirim_pedestrian_snapshot` stored: it goes on
-/// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+/// Restores a pedestrian tracker from a snapshot that `kestirim_pedestrian_snapshot` stored, in memory of at least
+/// `kestirim_pedestrian_size()` bytes. It continues bit for bit as if there had been no interruption. `length` may
+/// exceed the snapshot, such as a whole page of flash.
 ///
 /// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
 #[unsafe(no_mangle)]

@@ -12,16 +12,16 @@ use crate::memory::{self, Handle, argument, array, held, held_mut, place, status
 use crate::uwb::{Anchor, Number, OdometryRecord, RangeRecord, RangeReport, TagConfig, TagHealth};
 use crate::{Health, Status, floats};
 
-/// A tag in the plane at a known height: position and velocity from single ranges to anchors, in any order, with IMU and
-/// wheels if there are any.
+/// A tag tracker: estimates position and velocity of a tag in the plane, at a known height, from single ranges to
+/// anchors in any order, optionally with an IMU and wheels.
 ///
-/// Frame: the room's axes in which the anchors are given, right-handed with z up, m.
+/// Frame: `room` has the axes in which the anchors are given, right-handed with z up, m.
 #[derive(Debug)]
 pub struct Robot {
     _private: [u8; 0],
 }
 
-/// Most anchors of a tracker.
+/// Largest number of anchors of a tag tracker.
 pub const MOST_ANCHORS: usize = 8;
 
 type Tracker = PlaneTracker<Number, MOST_ANCHORS>;
@@ -31,37 +31,37 @@ impl Handle for Robot {
     const TAG: u32 = 0x6B50_5201;
 }
 
-/// Bytes that a tracker takes at most, on any target.
+/// Upper bound of the size of a tag tracker on any target, bytes: for static memory.
 pub const ROBOT_SIZE: usize = 1536;
 const _: () = assert!(memory::size::<Robot>() <= ROBOT_SIZE);
-/// Bytes that a snapshot takes at most, on any target.
+/// Upper bound of the size of a tag tracker's snapshot on any target, bytes.
 pub const ROBOT_SNAPSHOT: usize = ROBOT_SIZE / 4 * 5 + 64;
 
-/// One sample of an IMU on the tag.
+/// One sample of an IMU that is fixed to the tag.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotInertial {
-    /// Time of the sample, µs, the ranges' clock.
+    /// Time of the sample, µs on the ranges' clock.
     pub time_us: u64,
-    /// Acceleration in the body's axes, with or without gravity, m/s². From its changes the tracker tells standing from
-    /// moving.
+    /// Acceleration in the body's axes, with or without gravity, m/s². From its changes the tracker distinguishes
+    /// standing from moving.
     pub acceleration: [f32; 3],
 }
 
-/// Bytes that a tracker takes on this target.
+/// Size of a tag tracker on this target, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn kestirim_robot_size() -> usize {
     memory::size::<Robot>()
 }
 
-/// Alignment of its memory, bytes.
+/// Alignment of the tag tracker's memory on this target, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn kestirim_robot_align() -> usize {
     memory::align::<Robot>()
 }
 
-/// Makes a tracker in memory of at least `kestirim_robot_size()` bytes, before its first position, for up to
-/// `KESTIRIM_MOST_ANCHORS` anchors. Ranges name them by their place in this array.
+/// Creates a tag tracker without a position yet, in memory of at least `kestirim_robot_size()` bytes, for up to
+/// `KESTIRIM_MOST_ANCHORS` anchors. Ranges refer to an anchor by its index in this array.
 ///
 /// Errors: `TOO_MANY`; `NOT_FINITE`.
 #[unsafe(no_mangle)]
@@ -82,10 +82,10 @@ pub unsafe extern "C" fn kestirim_robot_init(
     }
 }
 
-/// Takes in a range. `report` may be null if it is not wanted.
+/// Processes a range to an anchor. `report` receives its outcome, and may be null.
 ///
-/// Errors: `NO_SUCH_ANCHOR`; `IMPLAUSIBLE` below -1 m or above 200 m; `DUPLICATE`; `OUT_OF_ORDER` if it is more than 0.1 s
-/// older than the estimate; `NOT_FINITE`.
+/// Errors: `NO_SUCH_ANCHOR`; `IMPLAUSIBLE` below -1 m or above 200 m; `DUPLICATE`; `OUT_OF_ORDER` if it is more than
+/// 0.1 s older than the estimate; `NOT_FINITE`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_robot_range(
     tracker: *mut Robot,
@@ -108,7 +108,7 @@ pub unsafe extern "C" fn kestirim_robot_range(
     })
 }
 
-/// Takes in a sample of an IMU: whether the tag stands.
+/// Processes a sample of the tag's IMU, which shows whether the tag stands.
 ///
 /// Errors: `NOT_FINITE`; `IMPLAUSIBLE` beyond 500 m/s²; `OUT_OF_ORDER`.
 #[unsafe(no_mangle)]
@@ -128,7 +128,8 @@ pub unsafe extern "C" fn kestirim_robot_inertial(
     })
 }
 
-/// Takes in a sample of the wheels: speed, and whether it turns. `kestirim_wheels` makes more of them.
+/// Processes a sample of the wheels: the speed, and whether the robot turns. `kestirim_wheels` makes fuller use of
+/// wheels.
 ///
 /// Errors: `NOT_FINITE`; `IMPLAUSIBLE` beyond 100 m/s or rad/s; `OUT_OF_ORDER`.
 #[unsafe(no_mangle)]
@@ -144,7 +145,7 @@ pub unsafe extern "C" fn kestirim_robot_odometry(
     })
 }
 
-/// Sets the tag's height, m.
+/// Sets the height of the tag in the room frame, m.
 ///
 /// Errors: `NOT_FINITE`.
 #[unsafe(no_mangle)]
@@ -156,9 +157,9 @@ pub unsafe extern "C" fn kestirim_robot_set_height(tracker: *mut Robot, height: 
     })
 }
 
-/// Position of the tag, m, room: x, y.
+/// Position of the tag, m, room frame: x, y.
 ///
-/// Errors: `NO_ESTIMATE` before the first one, or when it is lost.
+/// Errors: `NO_ESTIMATE` before the first position, or while it is lost.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_robot_position(
     tracker: *const Robot,
@@ -172,7 +173,7 @@ pub unsafe extern "C" fn kestirim_robot_position(
     })
 }
 
-/// Velocity of the tag, m/s, room: x, y.
+/// Velocity of the tag, m/s, room frame: x, y.
 ///
 /// Errors: `NO_ESTIMATE`.
 #[unsafe(no_mangle)]
@@ -188,8 +189,8 @@ pub unsafe extern "C" fn kestirim_robot_velocity(
     })
 }
 
-/// Standard deviation of the position at a time (µs), m: root of the sum of both axes' variances, with what the anchors'
-/// constant errors add.
+/// Standard deviation of the tag's position at a time (µs), m: the root of the sum of both axes' variances, including
+/// the effect of the anchors' constant errors and of a second position that the ranges allow.
 ///
 /// Errors: `NO_ESTIMATE`.
 #[unsafe(no_mangle)]
@@ -207,7 +208,8 @@ pub unsafe extern "C" fn kestirim_robot_sigma(
     })
 }
 
-/// Whether the position can be relied upon at a time (µs); `details` may be null if they are not wanted.
+/// Whether the tag's position can be relied upon at a time (µs). `details` receives the health in numbers, and may be
+/// null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_robot_health(
     tracker: *const Robot,
@@ -228,8 +230,8 @@ pub unsafe extern "C" fn kestirim_robot_health(
     })
 }
 
-/// Stores the tracker in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_ROBOT_SNAPSHOT` bytes are
-/// enough, `length` tells how many it took.
+/// Stores the tag tracker in a buffer, to be restored after a sleep or on another machine. `KESTIRIM_ROBOT_SNAPSHOT`
+/// bytes are enough; `length` receives the number of bytes used.
 ///
 /// Errors: `TOO_SMALL` for the buffer.
 #[unsafe(no_mangle)]
@@ -243,8 +245,9 @@ pub unsafe extern "C" fn kestirim_robot_snapshot(
     unsafe { memory::snapshot(tracker, buffer, capacity, length) }
 }
 
-/// Makes the tracker in memory of at least `kestirim_robot_size()` bytes that `kestirim_robot_snapshot` stored: it goes on
-/// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+/// Restores a tag tracker from a snapshot that `kestirim_robot_snapshot` stored, in memory of at least
+/// `kestirim_robot_size()` bytes. It continues bit for bit as if there had been no interruption. `length` may exceed
+/// the snapshot, such as a whole page of flash.
 ///
 /// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
 #[unsafe(no_mangle)]

@@ -1,57 +1,64 @@
 use core::ffi::{CStr, c_char};
 
-/// Outcome of a call. If it is not `KESTIRIM_STATUS_OK`, nothing was changed, and no answer was written.
+/// Outcome of a call. If it is not `KESTIRIM_STATUS_OK`, nothing was changed and no result was written.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// Done.
+    /// The call succeeded.
     Ok = 0,
     /// A pointer is null.
     NullPointer = 1,
-    /// A pointer is not aligned as its type wants it.
+    /// A pointer is not aligned for its type.
     Misaligned = 2,
-    /// The memory is smaller than the object.
+    /// The memory is too small for the object, or the buffer for the snapshot.
     TooSmall = 3,
-    /// The memory holds no object of this type: it was not initialised, or overwritten.
+    /// The memory holds no object of this type: it was never initialised, or has been overwritten.
     NotInitialised = 4,
-    /// A choice is none of those that there are, or a setting is out of its range.
+    /// An enumerated argument has an unknown value, or a setting or a number is out of its range.
     InvalidArgument = 5,
-    /// There is no estimate: none yet, or it was lost.
+    /// There is no estimate yet, or it was lost.
     NoEstimate = 6,
-    /// A number is NaN, infinite, or beyond what fixed point holds.
+    /// A number is NaN, infinite, or out of the range of the fixed-point format.
     NotFinite = 7,
-    /// No sensor can have measured this.
+    /// A measurement has a value that no sensor can have measured.
     Implausible = 8,
-    /// The time is before that of the last sample.
+    /// The sample is not later than the last one, or is too old for the estimate.
     OutOfOrder = 9,
-    /// The same measurement came before.
+    /// The measurement was already processed.
     Duplicate = 10,
     /// No anchor has this number.
     NoSuchAnchor = 11,
-    /// More anchors, corners, satellites or samples than there is room for.
+    /// There are more anchors, corners, satellites or samples than there is room for.
     TooMany = 12,
-    /// Fewer than are needed: anchors, satellites, corners.
+    /// There are fewer anchors, satellites or words of a navigation message than are needed.
     TooFew = 13,
-    /// The measurements contradict each other, or nothing explains them.
+    /// The measurements contradict each other, or no position explains them.
     Contradictory = 14,
-    /// The time since the last sample is too long for the estimate to be carried over it, or no multiple of the model's
-    /// interval.
+    /// The time since the last sample is too long to predict the estimate over it, or is not a multiple of the model's
+    /// interval; or no ephemeris or product covers the time.
     Gap = 15,
-    /// The geometry determines no position, the corners enclose nothing, or a matrix has no inverse.
+    /// The geometry determines no position, the corners enclose no area, or a matrix is singular.
     Geometry = 16,
     /// The estimator refused the step for another reason.
     Refused = 17,
-    /// The bytes are no snapshot of an object.
+    /// The bytes are not a snapshot.
     NoSnapshot = 18,
-    /// A snapshot of another object, of another version of this library, or of other numbers (`float` or fixed point).
+    /// The snapshot is of another type of object, another version of this library, or another number format (`float` or
+    /// fixed point).
     ForeignSnapshot = 19,
-    /// A snapshot that was not written whole, or was changed.
+    /// The snapshot was not written completely, or has been altered.
     DamagedSnapshot = 20,
+    /// The checksum of the navigation message is wrong, or the message is of another kind.
+    DamagedMessage = 21,
+    /// The satellite declares its signals unhealthy, or predicts no accuracy.
+    Unhealthy = 22,
+    /// The satellite does not broadcast the group delay for the observed carriers.
+    NoGroupDelay = 23,
 }
 
 impl Status {
-    /// All of them, and their names.
-    const NAMES: [(Self, &'static CStr); 21] = [
+    /// All statuses with their names.
+    const NAMES: [(Self, &'static CStr); 24] = [
         (Self::Ok, c"ok"),
         (Self::NullPointer, c"a pointer is null"),
         (Self::Misaligned, c"a pointer is not aligned"),
@@ -73,11 +80,14 @@ impl Status {
         (Self::NoSnapshot, c"the bytes are no snapshot"),
         (Self::ForeignSnapshot, c"the snapshot is of another object, version or number format"),
         (Self::DamagedSnapshot, c"the snapshot is damaged"),
+        (Self::DamagedMessage, c"the navigation message is damaged"),
+        (Self::Unhealthy, c"the satellite calls itself unhealthy"),
+        (Self::NoGroupDelay, c"the group delay between the carriers is not broadcast"),
     ];
 }
 
-/// The name of a status, in plain English: a text that lives as long as the program. Of a number that is none,
-/// "unknown status".
+/// The meaning of a status in plain English, as a string with static lifetime; "unknown status" for a number that is
+/// not a status.
 #[allow(unsafe_code)] // The symbol is this library's: all begin with its name.
 #[unsafe(no_mangle)]
 pub extern "C" fn kestirim_status_name(status: i32) -> *const c_char {

@@ -16,14 +16,15 @@ type Number = f32;
 #[cfg(feature = "fixed")]
 type Number = kestirim_scalar::Q16_16;
 
-/// Outputs of a filter.
+/// Number of measured outputs of a flight filter.
 pub const UAV_OUTPUTS: usize = 3;
 
-/// A Kalman filter along a flight: samples of any times, with gaps between them and outputs that are missing.
+/// A flight filter: a Kalman filter of an aircraft's longitudinal motion, for samples at any times, with gaps and
+/// missing outputs.
 ///
-/// States: angle of attack (rad), pitch rate (rad/s), airspeed (m/s), pitch angle (rad). Inputs: elevator (rad), throttle
-/// (0 to 1). All are deviations from the steady flight at which the model was linearised: subtract it from what is
-/// measured and applied, and add it to the estimate. Axes are the body's, in a vertical plane.
+/// States: angle of attack (rad), pitch rate (rad/s), airspeed (m/s), pitch angle (rad). Inputs: elevator (rad),
+/// throttle (0 to 1). All are deviations from the steady flight at which the model was linearised: subtract its values
+/// from measurements and inputs, and add them to the estimate. The motion is in a vertical plane, in the body's axes.
 #[derive(Debug)]
 pub struct Uav {
     _private: [u8; 0],
@@ -36,41 +37,42 @@ impl Handle for Uav {
     const TAG: u32 = 0x6B50_5501;
 }
 
-/// Bytes that a filter takes at most, on any target.
+/// Upper bound of the size of a flight filter on any target, bytes: for static memory.
 pub const UAV_SIZE: usize = 2048;
 const _: () = assert!(memory::size::<Uav>() <= UAV_SIZE);
-/// Bytes that a snapshot takes at most, on any target.
+/// Upper bound of the size of a flight filter's snapshot on any target, bytes.
 pub const UAV_SNAPSHOT: usize = UAV_SIZE / 4 * 5 + 64;
 
-/// The model of an aircraft near its steady flight and of its sensors: x' = A x + B u, y = C x. Rows one after another.
+/// Linear model of an aircraft near its steady flight and of its sensors: x' = A x + B u, y = C x. Matrices are
+/// row-major.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UavModel {
-    /// A: 4 rows of 4.
+    /// State matrix A: 4 rows of 4.
     pub a: [[f64; 4]; 4],
-    /// B: 4 rows of 2.
+    /// Input matrix B: 4 rows of 2.
     pub b: [[f64; 2]; 4],
-    /// C: a row of 4 an output, in whatever unit the output has.
+    /// Output matrix C: one row of 4 per output, in the unit of that output.
     pub c: [[f64; 4]; UAV_OUTPUTS],
-    /// Standard deviations of what reaches the aircraft beside elevator (rad) and throttle, a sample.
+    /// Standard deviations, per sample, of the noise on the inputs elevator (rad) and throttle.
     pub input_sigma: [f64; 2],
-    /// Standard deviation of each output, in its unit.
+    /// Standard deviation of each measured output, in its unit.
     pub output_sigma: [f64; UAV_OUTPUTS],
-    /// How long an interval between two samples usually is, s.
+    /// Usual interval between two samples, s.
     pub usual_interval: f64,
 }
 
-/// Inputs and outputs of one time, in deviations from the model's steady flight.
+/// Inputs and outputs at one time, as deviations from the model's steady flight.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UavSample {
-    /// Time of the sample, µs since any moment.
+    /// Time of the sample, µs since any epoch.
     pub time_us: i64,
-    /// Elevator (rad) and throttle (0 to 1), applied from this time until the next sample.
+    /// Inputs elevator (rad) and throttle (0 to 1), applied from this time until the next sample.
     pub input: [f64; 2],
-    /// The outputs, in the order and the units of C's rows.
+    /// Measured outputs, in the order and the units of C's rows.
     pub measured: [f64; UAV_OUTPUTS],
-    /// A bit an output: 1 if it was measured. The first row's is bit 0; 7 is all three.
+    /// Which outputs were measured, one bit each: bit 0 for C's first row; 7 for all three.
     pub present: u32,
 }
 
@@ -91,20 +93,20 @@ impl Uav {
     }
 }
 
-/// Bytes that a filter takes on this target.
+/// Size of a flight filter on this target, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn kestirim_uav_size() -> usize {
     memory::size::<Uav>()
 }
 
-/// Alignment of its memory, bytes.
+/// Alignment of the flight filter's memory on this target, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn kestirim_uav_align() -> usize {
     memory::align::<Uav>()
 }
 
-/// The Aerosonde, a small unmanned aircraft, with a pitch gyroscope, a Pitot tube and an attitude reference at 100 Hz: a
-/// model to begin with. Outputs are pitch rate (rad/s), airspeed (m/s) and pitch angle (rad).
+/// Writes an example model: the Aerosonde, a small unmanned aircraft, with a pitch gyroscope, a Pitot tube and an
+/// attitude reference at 100 Hz. Its outputs are pitch rate (rad/s), airspeed (m/s) and pitch angle (rad).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_uav_aerosonde(model: *mut UavModel) -> Status {
     status(|| {
@@ -124,7 +126,7 @@ pub unsafe extern "C" fn kestirim_uav_aerosonde(model: *mut UavModel) -> Status 
     })
 }
 
-/// Makes a filter in memory of at least `kestirim_uav_size()` bytes, of which nothing is known yet but the model.
+/// Creates a flight filter of a model, with an unknown state, in memory of at least `kestirim_uav_size()` bytes.
 ///
 /// Errors: `NOT_FINITE`; `INVALID_ARGUMENT` if the usual interval is not positive.
 #[unsafe(no_mangle)]
@@ -138,8 +140,8 @@ pub unsafe extern "C" fn kestirim_uav_init(
     unsafe { memory::init(memory, size, filter, || Uav::filter(&argument(model)?)) }
 }
 
-/// Takes in a sample. One that is more than a second older than the one before is not late: the clock was set back, and
-/// the filter begins anew.
+/// Processes a sample of a flight. If it is more than a second older than the preceding one, the clock was set back,
+/// and the filter restarts.
 ///
 /// Errors: `OUT_OF_ORDER`; `GAP` of more than a million usual intervals; `NOT_FINITE`.
 #[unsafe(no_mangle)]
@@ -159,8 +161,8 @@ pub unsafe extern "C" fn kestirim_uav_update(filter: *mut Uav, sample: *const Ua
     })
 }
 
-/// The estimate at the time of the last sample: angle of attack (rad), pitch rate (rad/s), airspeed (m/s), pitch angle
-/// (rad), as deviations.
+/// Estimate of the aircraft's state at the time of the last sample: angle of attack (rad), pitch rate (rad/s), airspeed
+/// (m/s), pitch angle (rad), as deviations from the model's steady flight.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_uav_estimate(
     filter: *const Uav,
@@ -174,7 +176,8 @@ pub unsafe extern "C" fn kestirim_uav_estimate(
     })
 }
 
-/// Standard deviations of the estimate: rad, rad/s, m/s, rad.
+/// Standard deviations of the aircraft's estimated state: angle of attack (rad), pitch rate (rad/s), airspeed (m/s),
+/// pitch angle (rad).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_uav_sigma(filter: *const Uav, sigma: *mut [f64; 4]) -> Status {
     status(|| {
@@ -185,8 +188,9 @@ pub unsafe extern "C" fn kestirim_uav_sigma(filter: *const Uav, sigma: *mut [f64
     })
 }
 
-/// Whether the estimate can be relied upon: `INNOVATIONS` if measurements and model have contradicted each other over
-/// about 200 samples, `REJECTED` if more than a tenth of about 50 samples' measurements were left out.
+/// Whether the estimate of the flight can be relied upon. Reasons why not: `INNOVATIONS` if measurements and model have
+/// contradicted each other over about 200 samples; `REJECTED` if over about 50 samples more than a tenth of the
+/// measurements were rejected; `TIME` if over about 1000 samples outputs or inputs seem to be late.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_uav_health(filter: *const Uav, health: *mut Health) -> Status {
     status(|| {
@@ -197,8 +201,8 @@ pub unsafe extern "C" fn kestirim_uav_health(filter: *const Uav, health: *mut He
     })
 }
 
-/// Stores the filter in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_UAV_SNAPSHOT` bytes are
-/// enough, `length` tells how many it took.
+/// Stores the flight filter in a buffer, to be restored after a sleep or on another machine. `KESTIRIM_UAV_SNAPSHOT`
+/// bytes are enough; `length` receives the number of bytes used.
 ///
 /// Errors: `TOO_SMALL` for the buffer.
 #[unsafe(no_mangle)]
@@ -212,8 +216,9 @@ pub unsafe extern "C" fn kestirim_uav_snapshot(
     unsafe { memory::snapshot(filter, buffer, capacity, length) }
 }
 
-/// Makes the filter in memory of at least `kestirim_uav_size()` bytes that `kestirim_uav_snapshot` stored: it goes on
-/// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+/// Restores a flight filter from a snapshot that `kestirim_uav_snapshot` stored, in memory of at least
+/// `kestirim_uav_size()` bytes. It continues bit for bit as if there had been no interruption. `length` may exceed
+/// the snapshot, such as a whole page of flash.
 ///
 /// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
 #[unsafe(no_mangle)]

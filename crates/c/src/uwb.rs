@@ -14,23 +14,23 @@ pub(crate) type Number = f32;
 #[cfg(feature = "fixed")]
 pub(crate) type Number = kestirim_scalar::Q12_20;
 
-/// How well the anchors are known.
+/// Calibration of the anchors' ranges.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Calibration {
-    /// As they come: ranges are too long by a decimetre or two.
+    /// Uncalibrated anchors: ranges are too long by a decimetre or two.
     Uncalibrated = 0,
-    /// Each anchor's bias is known, to 5 cm.
+    /// Calibrated anchors: the bias of each is known to 5 cm.
     Calibrated = 1,
 }
 
-/// Settings of a tag's tracker.
+/// Settings of a tag tracker or wheel tracker.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TagConfig {
-    /// How well the anchors are known: a `kestirim_calibration`.
+    /// Calibration of the anchors: a `kestirim_calibration`.
     pub calibration: u32,
-    /// Height of the tag in the room, m.
+    /// Height of the tag in the room frame, m.
     pub height: f32,
 }
 
@@ -48,13 +48,13 @@ impl TagConfig {
     }
 }
 
-/// An anchor: where it is, and by how much it measures too long.
+/// An anchor, with its position and range bias.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Anchor {
-    /// Position, m, room: x, y, z.
+    /// Position of the anchor, m, room frame: x, y, z.
     pub position: [f32; 3],
-    /// What its ranges are too long by, m; 0 if that is not known.
+    /// Bias of its ranges, m, positive if they are too long; 0 if unknown.
     pub bias: f32,
 }
 
@@ -71,27 +71,27 @@ impl Anchor {
     }
 }
 
-/// One measured distance.
+/// One range: the measured distance from the tag to an anchor.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RangeRecord {
-    /// Time of the measurement, µs since any moment.
+    /// Time of the measurement, µs since any epoch.
     pub time_us: u64,
-    /// The anchor's place in the array that the tracker was made with.
+    /// Index of the anchor in the array with which the tracker was created.
     pub anchor: u32,
-    /// The distance, m; small negative ones are accepted.
+    /// The distance, m; small negative values are accepted.
     pub range: f32,
 }
 
-/// What the wheels do.
+/// One sample of wheel odometry.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OdometryRecord {
-    /// Time of the measurement, µs, the ranges' clock.
+    /// Time of the measurement, µs on the ranges' clock.
     pub time_us: u64,
     /// Mean speed of the wheels, m/s.
     pub speed: f32,
-    /// Difference of their speeds by the track, or the rate of a gyroscope beside them, rad/s.
+    /// Turn rate, rad/s: the difference of the wheels' speeds over the track, or the rate of a gyroscope.
     pub turn_rate: f32,
 }
 
@@ -105,35 +105,36 @@ impl From<OdometryRecord> for OdometrySample<Number> {
     }
 }
 
-/// Outcome of a range.
+/// What a tracker did with a range.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RangeOutcome {
-    /// Kept for a first position, for which more are needed.
+    /// The range is stored for a first position, which needs more ranges or is still being searched for.
     Collected = 0,
-    /// It made a first position possible, or a new one after the tracker was lost.
+    /// With this range a first position was found, or a new one after the tracker was lost.
     Started = 1,
-    /// Taken in with its full weight.
+    /// The range was used with its full weight.
     Taken = 2,
-    /// Taken in with less weight: it is longer or shorter than expected.
+    /// The range was used with a reduced weight: it is longer or shorter than expected.
     Weakened = 3,
-    /// Left out.
+    /// The range was rejected.
     Rejected = 4,
-    /// Taken in although it does not fit: too many had been left out.
+    /// The range was used although it does not fit: too many had been rejected.
     Recovered = 5,
 }
 
-/// What became of a range.
+/// Outcome and innovation of a range.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RangeReport {
-    /// Its outcome.
+    /// What the tracker did with the range.
     pub outcome: RangeOutcome,
-    /// Measured minus expected, m; 0 without an estimate.
+    /// Innovation of the range, measured minus expected, m; 0 without an estimate.
     pub innovation: f32,
-    /// Its variance, m²; 0 without an estimate.
+    /// Variance of the innovation, m²; 0 without an estimate.
     pub variance: f32,
-    /// Its square by its variance: 1 on average when the model is right.
+    /// Normalised innovation squared (NIS): the square of the innovation over its variance, 1 on average if the model
+    /// is right; 0 without an estimate.
     pub nis: f32,
 }
 
@@ -163,31 +164,33 @@ impl RangeReport {
 pub enum TagState {
     /// No position has been found yet.
     Initialising = 0,
-    /// Ranges come in and fit.
+    /// Ranges arrive and are consistent.
     Tracking = 1,
-    /// No range came for a second or two rounds of the anchors: the position is extrapolated.
+    /// No range arrived for a second, or for two rounds of the anchors if those take longer: the position is
+    /// extrapolated.
     Coasting = 2,
-    /// The position has become worthless: the next ranges make a new one.
+    /// The position has become useless: the next ranges determine a new one.
     Lost = 3,
 }
 
-/// Health of a tag's tracker in numbers.
+/// Health of a tag tracker or wheel tracker in numbers.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TagHealth {
     /// State of the position.
     pub state: TagState,
-    /// Ranges taken in so far.
+    /// Number of ranges used so far.
     pub taken: u32,
-    /// Ranges left out so far.
+    /// Number of ranges rejected so far.
     pub rejected: u32,
-    /// Positions begun anew after the first.
+    /// Number of positions begun after the first.
     pub restarts: u16,
-    /// Anchors heard lately of which nothing is in the way.
+    /// Number of anchors heard within the last second, or two rounds of the anchors if those take longer, except
+    /// blocked ones, whose ranges have been too long for a while.
     pub heard: u8,
-    /// 1 if the tag stands still, as far as IMU or wheels tell, else 0.
+    /// 1 if the tag stands still according to the IMU or the wheels, else 0.
     pub still: u8,
-    /// Mean NIS of the last twenty ranges or so: 1 when the model is right.
+    /// Mean normalised innovation squared of about the last twenty ranges that were used: 1 if the model is right.
     pub nis: f32,
     /// Dilution of precision of the anchors heard; 0 if they do not determine a position.
     pub dilution: f32,

@@ -11,10 +11,11 @@ use crate::robot::MOST_ANCHORS;
 use crate::uwb::{Anchor, Number, OdometryRecord, RangeRecord, RangeReport, TagConfig, TagHealth};
 use crate::{Health, Status, floats};
 
-/// A tag in the plane on a robot whose wheels are counted: the wheels move the estimate, the ranges correct it. Scale and
-/// drift of the wheels' turns are estimated, and so is the heading, of which nothing need be known.
+/// A wheel tracker: estimates the position of a tag in the plane on a robot with wheel odometry. The wheels drive the
+/// prediction, the ranges correct it. The wheels' scale, the gain and drift of their turns, and the heading are
+/// estimated: the heading need not be known.
 ///
-/// Frame: the room's axes in which the anchors are given, right-handed with z up, m.
+/// Frame: `room` has the axes in which the anchors are given, right-handed with z up, m.
 #[derive(Debug)]
 pub struct Wheels {
     _private: [u8; 0],
@@ -27,26 +28,26 @@ impl Handle for Wheels {
     const TAG: u32 = 0x6B50_5701;
 }
 
-/// Bytes that a tracker takes at most, on any target.
+/// Upper bound of the size of a wheel tracker on any target, bytes: for static memory.
 pub const WHEELS_SIZE: usize = 2048;
 const _: () = assert!(memory::size::<Wheels>() <= WHEELS_SIZE);
-/// Bytes that a snapshot takes at most, on any target.
+/// Upper bound of the size of a wheel tracker's snapshot on any target, bytes.
 pub const WHEELS_SNAPSHOT: usize = WHEELS_SIZE / 4 * 5 + 64;
 
-/// Bytes that a tracker takes on this target.
+/// Size of a wheel tracker on this target, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn kestirim_wheels_size() -> usize {
     memory::size::<Wheels>()
 }
 
-/// Alignment of its memory, bytes.
+/// Alignment of the wheel tracker's memory on this target, bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn kestirim_wheels_align() -> usize {
     memory::align::<Wheels>()
 }
 
-/// Makes a tracker in memory of at least `kestirim_wheels_size()` bytes, before its first position, for up to
-/// `KESTIRIM_MOST_ANCHORS` anchors. Ranges name them by their place in this array.
+/// Creates a wheel tracker without a position yet, in memory of at least `kestirim_wheels_size()` bytes, for up to
+/// `KESTIRIM_MOST_ANCHORS` anchors. Ranges refer to an anchor by its index in this array.
 ///
 /// Errors: `TOO_MANY`; `NOT_FINITE`.
 #[unsafe(no_mangle)]
@@ -67,10 +68,10 @@ pub unsafe extern "C" fn kestirim_wheels_init(
     }
 }
 
-/// Takes in a range. `report` may be null if it is not wanted.
+/// Processes a range to an anchor. `report` receives its outcome, and may be null.
 ///
-/// Errors: `NO_SUCH_ANCHOR`; `IMPLAUSIBLE` below -1 m or above 200 m; `DUPLICATE`; `OUT_OF_ORDER` if it is more than 0.1 s
-/// older than the estimate; `NOT_FINITE`.
+/// Errors: `NO_SUCH_ANCHOR`; `IMPLAUSIBLE` below -1 m or above 200 m; `DUPLICATE`; `OUT_OF_ORDER` if it is more than
+/// 0.1 s older than the estimate; `NOT_FINITE`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_wheels_range(
     tracker: *mut Wheels,
@@ -93,7 +94,8 @@ pub unsafe extern "C" fn kestirim_wheels_range(
     })
 }
 
-/// Takes in a sample of the wheels: what they did since the one before. Give all, in order with the ranges.
+/// Processes a sample of the wheels: their motion since the preceding sample. Pass every sample, in the order of time
+/// with the ranges.
 ///
 /// Errors: `NOT_FINITE`; `IMPLAUSIBLE` beyond 100 m/s or rad/s; `OUT_OF_ORDER`.
 #[unsafe(no_mangle)]
@@ -109,7 +111,7 @@ pub unsafe extern "C" fn kestirim_wheels_odometry(
     })
 }
 
-/// Sets the tag's height, m.
+/// Sets the height of the tag in the room frame, m.
 ///
 /// Errors: `NOT_FINITE`.
 #[unsafe(no_mangle)]
@@ -121,9 +123,9 @@ pub unsafe extern "C" fn kestirim_wheels_set_height(tracker: *mut Wheels, height
     })
 }
 
-/// Position of the tag, m, room: x, y.
+/// Position of the tag, m, room frame: x, y.
 ///
-/// Errors: `NO_ESTIMATE` before the first one, or when it is lost.
+/// Errors: `NO_ESTIMATE` before the first position, or while it is lost.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_wheels_position(
     tracker: *const Wheels,
@@ -137,8 +139,8 @@ pub unsafe extern "C" fn kestirim_wheels_position(
     })
 }
 
-/// Standard deviation of the position at a time (µs), m: root of the sum of both axes' variances, with what the anchors'
-/// constant errors add.
+/// Standard deviation of the tag's position at a time (µs), m: the root of the sum of both axes' variances, including
+/// the effect of the anchors' constant errors.
 ///
 /// Errors: `NO_ESTIMATE`.
 #[unsafe(no_mangle)]
@@ -156,7 +158,8 @@ pub unsafe extern "C" fn kestirim_wheels_sigma(
     })
 }
 
-/// Whether the position can be relied upon at a time (µs); `details` may be null if they are not wanted.
+/// Whether the tag's position can be relied upon at a time (µs). `details` receives the health in numbers, and may be
+/// null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_wheels_health(
     tracker: *const Wheels,
@@ -177,9 +180,9 @@ pub unsafe extern "C" fn kestirim_wheels_health(
     })
 }
 
-/// By what the wheels' ways are to be multiplied.
+/// Factor by which distances measured by the wheels have to be multiplied.
 ///
-/// Errors: `NO_ESTIMATE` before it is known.
+/// Errors: `NO_ESTIMATE` before the factor is known.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn kestirim_wheels_scale(tracker: *const Wheels, scale: *mut f32) -> Status {
     status(|| {
@@ -190,8 +193,8 @@ pub unsafe extern "C" fn kestirim_wheels_scale(tracker: *const Wheels, scale: *m
     })
 }
 
-/// Stores the tracker in a buffer, to be restored after a sleep or by another machine: `KESTIRIM_WHEELS_SNAPSHOT` bytes are
-/// enough, `length` tells how many it took.
+/// Stores the wheel tracker in a buffer, to be restored after a sleep or on another machine. `KESTIRIM_WHEELS_SNAPSHOT`
+/// bytes are enough; `length` receives the number of bytes used.
 ///
 /// Errors: `TOO_SMALL` for the buffer.
 #[unsafe(no_mangle)]
@@ -205,8 +208,9 @@ pub unsafe extern "C" fn kestirim_wheels_snapshot(
     unsafe { memory::snapshot(tracker, buffer, capacity, length) }
 }
 
-/// Makes the tracker in memory of at least `kestirim_wheels_size()` bytes that `kestirim_wheels_snapshot` stored: it goes on
-/// to the bit as if it had not slept. More bytes than it took, such as a whole page of flash, may be given.
+/// Restores a wheel tracker from a snapshot that `kestirim_wheels_snapshot` stored, in memory of at least
+/// `kestirim_wheels_size()` bytes. It continues bit for bit as if there had been no interruption. `length` may exceed
+/// the snapshot, such as a whole page of flash.
 ///
 /// Errors: `NO_SNAPSHOT`; `FOREIGN_SNAPSHOT`; `DAMAGED_SNAPSHOT`.
 #[unsafe(no_mangle)]

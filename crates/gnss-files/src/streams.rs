@@ -1,16 +1,8 @@
-//! Streams of receivers as they were recorded: RTCM 3 and UBX.
+//! Recorded receiver streams: RTCM 3 and UBX.
 
-#[cfg(any(feature = "rtcm", feature = "ubx"))]
-mod bits;
 #[cfg(feature = "ubx")]
-mod collection;
+mod dated;
 mod frames;
-#[cfg(feature = "ubx")]
-mod inav;
-#[cfg(any(feature = "rtcm", feature = "ubx"))]
-mod indices;
-#[cfg(feature = "ubx")]
-mod lnav;
 #[cfg(feature = "rtcm")]
 mod rtcm;
 #[cfg(all(test, any(feature = "rtcm", feature = "ubx")))]
@@ -35,32 +27,32 @@ use crate::unserved::Unserved;
 /// A satellite with all its signals.
 pub(crate) type Signals = (u8, Vec<Raw>);
 
-/// What a stream held.
+/// The contents of a stream.
 #[derive(Debug, Default)]
 pub(crate) struct Stream {
     /// Epochs in the order of the stream.
     pub(crate) epochs: Vec<(GpsTime, Vec<Signals>)>,
-    /// Of satellites of GLONASS, by number.
+    /// The frequency channels of GLONASS satellites, by satellite number.
     pub(crate) channels: BTreeMap<u8, i8>,
-    /// Ephemerides with the numbers of their satellites.
+    /// Ephemerides, with the numbers of their satellites.
     pub(crate) ephemerides: Vec<(u8, Ephemeris)>,
-    /// α and β of Klobuchar's model.
+    /// The coefficients α and β of Klobuchar's model.
     pub(crate) ionosphere: Option<[[f64; 4]; 2]>,
-    /// How many messages were passed over: other systems, other things.
+    /// The number of messages passed over: other systems, other content.
     pub(crate) skipped: usize,
-    /// Which satellites were observed whose systems are not served.
+    /// The observed satellites of systems that are not read.
     pub(crate) observed: Unserved,
-    /// Which satellites sent ephemerides that are not read.
+    /// The satellites with ephemerides that are not read.
     pub(crate) unread: Unserved,
-    /// Warnings about it.
+    /// Warnings about the stream.
     pub(crate) warnings: Vec<Warning>,
 }
 
 impl Stream {
-    /// What a file holds if it is a recorded stream, and none if it is none.
+    /// The contents of a file if it is a recorded stream; `None` if it is not.
     ///
     /// # Errors
-    /// [`Error::File`] if nothing can be made of it.
+    /// [`Error::File`] if the stream cannot be interpreted.
     pub(crate) fn of(text: &Text) -> Result<Option<Self>, Error> {
         match Kind::of(text.bytes()) {
             #[cfg(feature = "ubx")]
@@ -71,7 +63,7 @@ impl Stream {
         }
     }
 
-    /// Takes what the satellites broadcast out of what was observed of them.
+    /// Moves the broadcast data into a stream of their own, leaving the observations.
     pub(crate) fn take_broadcast(&mut self) -> Self {
         Self {
             ephemerides: take(&mut self.ephemerides),
@@ -83,22 +75,22 @@ impl Stream {
     }
 }
 
-/// A week, ms.
+/// The length of a week, ms.
 #[cfg(any(feature = "rtcm", feature = "ubx"))]
 const WEEK_MS: i64 = 604_800_000;
 
-/// Tells which phases were lost since they were observed before, by for how long they have been tracked.
+/// Detects loss of lock on phases between observations, from how long they have been tracked.
 #[cfg(any(feature = "rtcm", feature = "ubx"))]
 #[derive(Debug, Default)]
 struct Locks(BTreeMap<(u8, Signal), (i64, u32)>);
 
 #[cfg(any(feature = "rtcm", feature = "ubx"))]
 impl Locks {
-    /// For longer than a message can tell.
+    /// The tracking time for longer than a message can express.
     const LONGEST: u32 = u32::MAX;
 
-    /// Whether a phase was lost, which at `time` (ms of the week) has been tracked for at least `tracked` ms: for less than before,
-    /// or not ever since it was observed before.
+    /// Whether lock was lost on a phase that at `time` (ms of the week) has been tracked for at least `tracked` ms: for
+    /// less than before, or for less than the time since the preceding observation.
     fn lost(&mut self, satellite: u8, signal: Signal, time: i64, tracked: u32) -> bool {
         let before = self.0.insert((satellite, signal), (time, tracked));
         before.is_some_and(|(then, before)| {

@@ -4,32 +4,32 @@ use crate::{BodyAxes, Direction};
 
 /// The phase centre of an antenna on one frequency, as an ANTEX file describes it.
 ///
-/// Values lie on a grid: one row of zenith angles (receivers) or nadir angles (satellites) without
-/// azimuth, and, if the antenna was calibrated so, one such row for each azimuth from 0° to 360°.
+/// Values lie on a grid: one row of zenith angles (receivers) or nadir angles (satellites) without azimuth, and, if the
+/// calibration covers azimuth, one such row for each azimuth from 0° to 360°.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pattern<'a> {
-    /// Mean phase centre from the antenna's reference point, m: north, east, up of a receiver's;
-    /// X, Y, Z of the satellite's body for a satellite's.
+    /// The mean phase centre, m: for a receiver north, east and up of the antenna's reference point; for a satellite
+    /// along X, Y and Z of its body.
     pub offset: [f64; 3],
-    /// First angle of the grid, degrees.
+    /// The first angle of the grid, degrees.
     pub first: f64,
-    /// Step of the grid, degrees.
+    /// The step of the grid, degrees.
     pub step: f64,
-    /// Phase centre variation whatever the azimuth (`NOAZI`), m.
+    /// The azimuth-independent phase centre variations (`NOAZI`), m.
     pub mean: &'a [f64],
-    /// Step of the azimuths, degrees; zero without them.
+    /// The step of the azimuths, degrees; zero if the grid has none.
     pub azimuth_step: f64,
-    /// The rows of all azimuths one after the other, each as long as `mean`, m; or empty.
+    /// The rows of all azimuths one after the other, each as long as `mean`, m; empty if there are none.
     pub by_azimuth: &'a [f64],
 }
 
 impl Pattern<'_> {
-    /// Variation of the phase centre: excess of the range over that from the mean phase centre, m, at an angle (rad)
-    /// from the zenith or nadir and an azimuth (rad), if one matters.
+    /// The variation of the phase centre, m: the excess of the range over that from the mean phase centre, at an angle
+    /// (rad) from the zenith or nadir and, optionally, an azimuth (rad).
     ///
-    /// Linear between the points of the grid, the edge's value beyond it. An azimuth counts only if there are
-    /// whole rows for it; a grid without a positive step says nothing: 0.
+    /// Linear between the grid points, constant beyond the edges. An azimuth counts only if the grid has complete rows
+    /// for it; without a positive step the variation is 0.
     pub fn variation(&self, angle: f64, azimuth: Option<f64>) -> f64 {
         let place = (angle.to_degrees() - self.first) / self.step;
         if !(self.step > 0.0 && place.is_finite()) {
@@ -45,30 +45,30 @@ impl Pattern<'_> {
     fn across_azimuths(&self, place: f64, azimuth: f64) -> Option<f64> {
         let width = self.mean.len();
         let whole = width > 0 && self.by_azimuth.len().is_multiple_of(width);
-        if !(whole && self.azimuth_step > 0.0 && azimuth.is_finite()) {
+        let row = (azimuth - 360.0 * libm::floor(azimuth / 360.0)) / self.azimuth_step;
+        if !(whole && self.azimuth_step > 0.0 && row.is_finite()) {
             return None;
         }
-        let row = (azimuth - 360.0 * libm::floor(azimuth / 360.0)) / self.azimuth_step;
         let below = libm::floor(row);
         let mut rows = self.by_azimuth.chunks_exact(width);
         let first = rows.clone().next()?;
         let left = rows.nth(below as usize)?;
-        // A grid that stops short of 360° goes on at 0°.
+        // A grid that ends before 360° continues at 0°.
         let right = rows.next().unwrap_or(first);
         let (left, right) = (between(left, place)?, between(right, place)?);
         Some(left + (right - left) * (row - below))
     }
 
-    /// Contribution of a receiver's antenna to the modelled range from its reference point to a satellite, m.
+    /// The contribution of a receiver's antenna to the modelled range from its reference point to a satellite, m.
     ///
-    /// The phase centre `offset` shortens the range by its part along the line of sight, the variation
-    /// lengthens it: what RTKLIB's `antmodel` calls `dant` and subtracts from the observations. The antenna
-    /// stands level and looks north.
+    /// The phase centre `offset` shortens the range by its component along the line of sight, the variation lengthens
+    /// it: what RTKLIB's `antmodel` calls `dant` and subtracts from the observations. The antenna is assumed level and
+    /// facing north.
     pub fn receiver_range(&self, direction: Direction) -> f64 {
         self.receiver_range_along(direction, &direction.local())
     }
 
-    /// The same where the unit vector of this direction to the east, north and up is known.
+    /// [`Self::receiver_range`] for a direction whose unit vector to the east, north and up is known.
     pub(crate) fn receiver_range_along(&self, direction: Direction, local: &Vector3<f64>) -> f64 {
         let [north, east, up] = self.offset;
         let nearer = local.dot(&Vector3::new(east, north, up));
@@ -76,31 +76,33 @@ impl Pattern<'_> {
         self.variation(zenith, Some(direction.azimuth)) - nearer
     }
 
-    /// The mean phase centre from the satellite's centre of mass, ECEF m: add it to the position of an orbit
+    /// The mean phase centre relative to the satellite's centre of mass, ECEF m: add it to the position of an orbit
     /// product, which is that of the centre of mass.
     pub fn satellite_offset(&self, axes: &BodyAxes) -> Vector3<f64> {
         axes.to_ecef(&self.offset)
     }
 
-    /// The variation of a satellite's antenna, m, towards a receiver that sees it along `sight` (ECEF unit
+    /// The phase centre variation of a satellite's antenna, m, towards a receiver that sees it along `sight` (ECEF unit
     /// vector from the receiver to the satellite). Add it to the modelled range.
     ///
-    /// Nadir angle and, where the satellite has rows for it, azimuth from the body's Y axis towards its X axis
-    /// (ANTEX 1.4).
+    /// The variation depends on the nadir angle and, where the satellite has rows for it, on the azimuth from the
+    /// body's Y axis towards its X axis (ANTEX 1.4).
     pub fn satellite_variation(&self, axes: &BodyAxes, sight: &Vector3<f64>) -> f64 {
         let [x, y, z] = axes.from_ecef(&-sight);
         self.variation(libm::atan2(libm::hypot(x, y), z), Some(libm::atan2(x, y)))
     }
 
-    /// Contribution of a satellite's antenna to the modelled range from its centre of mass, m: offset along the line
-    /// of sight and variation. As [`Self::satellite_offset`] and [`Self::satellite_variation`] together, up to
-    /// the curvature of the wave front (below 0.1 µm).
+    /// The contribution of a satellite's antenna to the modelled range from its centre of mass, m: the offset along the
+    /// line of sight and the variation.
+    ///
+    /// It equals [`Self::satellite_offset`] and [`Self::satellite_variation`] together, up to the curvature of the wave
+    /// front (below 0.1 µm).
     pub fn satellite_range(&self, axes: &BodyAxes, sight: &Vector3<f64>) -> f64 {
         self.satellite_offset(axes).dot(sight) + self.satellite_variation(axes, sight)
     }
 }
 
-/// Linear interpolation at a place counted in steps, held at the ends.
+/// Linear interpolation at a position counted in steps, constant beyond the ends.
 fn between(values: &[f64], place: f64) -> Option<f64> {
     let last = values.len().checked_sub(1)?;
     let place = place.clamp(0.0, last as f64);

@@ -1,39 +1,33 @@
-//! Orbits and clocks that satellites broadcast.
+//! Orbits and clocks from broadcast ephemerides.
 
 use crate::constants::EARTH_ROTATION;
 use crate::{Constellation, GpsTime, OrbitState};
 use nalgebra::Vector3;
 
-/// Seconds of a day.
-const DAY: f64 = 86_400.0;
-/// The day (modified Julian date) that began the first week of GPS time.
-const FIRST_WEEK: i32 = 44_244;
-/// By so much BeiDou's time is behind that of GPS, s.
-const BEIDOU_BEHIND: f64 = 14.0;
-/// Newton's steps of Kepler's equation: two suffice for orbits of satellites of navigation, four for e = 0.6.
+/// The number of Newton steps for Kepler's equation: two suffice for orbits of navigation satellites, four for e = 0.6.
 const STEPS: usize = 6;
 
 /// An ephemeris as a satellite of GPS, Galileo or BeiDou broadcasts it, in m, s and rad.
 ///
-/// Positions are those of IS-GPS-200, table 20-IV, which are the Galileo OS SIS ICD's, too (5.1.1), and with constants of their own
-/// those of BeiDou's satellites that are not geostationary (BDS-SIS-ICD-B1I, ephemeris parameters): where the phase centre of the
-/// satellite's antenna is, not its centre of mass. What the documents call by symbols stands behind each name.
+/// Positions follow IS-GPS-200, table 20-IV, which the Galileo OS SIS ICD shares (5.1.1), and, with other constants,
+/// BDS-SIS-ICD-B1I (ephemeris parameters) for BeiDou satellites that are not geostationary. They are those of the phase
+/// centre of the satellite's antenna, not of its centre of mass. The documents' symbols are given with each field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ephemeris {
-    /// The system, whose constants count.
+    /// The satellite system, which determines the constants.
     pub constellation: Constellation,
-    /// The time of which the orbit is told, by GPS: toe.
+    /// The reference time of the orbit, in GPS time: toe.
     pub time: GpsTime,
-    /// The time of which the clock is told: toc.
+    /// The reference time of the clock: toc.
     pub clock_time: GpsTime,
-    /// The satellite's clock minus the time of its system, s, s/s and s/s², without the effect of its eccentric orbit: af0, af1,
-    /// af2. Of Galileo and BeiDou, of the two carriers that are observed.
+    /// The satellite's clock minus the time of its system, s, s/s and s/s², without the relativistic effect of the
+    /// orbit's eccentricity: af0, af1, af2. For Galileo and BeiDou it is that of the two carriers that are observed.
     pub clock: [f64; 3],
-    /// By what the clock is ahead of that of the first carrier alone, s: `TGD` or `BGD`.
+    /// By how much the clock is ahead of that of the first carrier alone, s: `TGD` or `BGD`.
     pub group_delay: f64,
-    /// Root of the semi-major axis, √m: √A.
+    /// The square root of the semi-major axis, √m: √A.
     pub root_of_axis: f64,
     /// Eccentricity: e.
     pub eccentricity: f64,
@@ -45,11 +39,11 @@ pub struct Ephemeris {
     pub perigee: f64,
     /// Longitude of the ascending node at the beginning of the week: Ω0.
     pub node: f64,
-    /// Its rate, rad/s: Ω̇.
+    /// The rate of the ascending node's longitude, rad/s: Ω̇.
     pub node_rate: f64,
     /// Inclination: i0.
     pub inclination: f64,
-    /// Its rate, rad/s: IDOT.
+    /// The rate of the inclination, rad/s: IDOT.
     pub inclination_rate: f64,
     /// Cosine and sine terms of the argument of latitude, rad: Cuc, Cus.
     pub latitude_terms: [f64; 2],
@@ -57,19 +51,19 @@ pub struct Ephemeris {
     pub radius_terms: [f64; 2],
     /// Cosine and sine terms of the inclination, rad: Cic, Cis.
     pub inclination_terms: [f64; 2],
-    /// Standard deviation of a range by it, m: URA or SISA.
+    /// The standard deviation of a range from this ephemeris, m: URA or SISA.
     pub accuracy: f64,
-    /// For how long it holds before and behind its time, s: half the fit interval of GPS.
+    /// How long the ephemeris is valid before and after its reference time, s: half the fit interval for GPS.
     pub holds: f64,
 }
 
 impl Ephemeris {
-    /// Whether it may be used at a time.
+    /// Whether the ephemeris is valid at a time.
     pub fn holds_at(&self, time: GpsTime) -> bool {
         time.since(self.time).abs() <= self.holds
     }
 
-    /// That of which the time is nearest, among those of a satellite that may be used at a time.
+    /// The ephemeris of a satellite with the nearest reference time among those valid at `time`.
     pub fn nearest(of_satellite: &[Self], time: GpsTime) -> Option<&Self> {
         let away = |it: &&Self| time.since(it.time).abs();
         of_satellite
@@ -78,15 +72,17 @@ impl Ephemeris {
             .min_by(|a, b| away(a).total_cmp(&away(b)))
     }
 
-    /// The satellite's clock minus the time of its system at a time of that, s, without the effect of its eccentric orbit
-    /// ([`eccentricity_clock`](crate::eccentricity_clock)). (IS-GPS-200, 20.3.3.3.3.1.)
+    /// The satellite's clock minus the time of its system at `time`, s (IS-GPS-200, 20.3.3.3.3.1).
+    ///
+    /// It does not include the relativistic effect of the orbit's eccentricity
+    /// ([`eccentricity_clock`](crate::eccentricity_clock)).
     pub fn clock_at(&self, time: GpsTime) -> f64 {
         let [offset, drift, ageing] = self.clock;
         let elapsed = time.since(self.clock_time);
         offset + elapsed * (drift + elapsed * ageing)
     }
 
-    /// Where the phase centre of the satellite's antenna is at a time, and how it moves. (IS-GPS-200, table 20-IV.)
+    /// The position and velocity of the phase centre of the satellite's antenna at a time. (IS-GPS-200, table 20-IV.)
     pub fn orbit_at(&self, time: GpsTime) -> OrbitState {
         let elapsed = time.since(self.time);
         let axis = self.root_of_axis * self.root_of_axis;
@@ -109,16 +105,16 @@ impl Ephemeris {
         let of_latitude = of_argument + of_latitude;
         let tilt = self.inclination + self.inclination_rate * elapsed + tilt;
         let of_tilt = self.inclination_rate + of_tilt;
-        // By the week of the ephemeris, even when that is over.
-        let second = second_of_week(self.time.plus(-self.behind())) + elapsed;
+        // Counted in the week of the ephemeris, even after its end.
+        let second = self.time.plus(-self.behind()).second_of_week() + elapsed;
         let node = self.node + self.node_rate * elapsed - self.rotation() * second;
 
-        // In the plane of the orbit, x to the ascending node.
+        // In the orbital plane, x towards the ascending node.
         let (up, along) = libm::sincos(argument + latitude);
         let (x, y) = (radius * along, radius * up);
         let of_x = of_radius * along - y * of_latitude;
         let of_y = of_radius * up + x * of_latitude;
-        // The same about the axis of the Earth, x still to the node.
+        // Equatorial coordinates, x still towards the node.
         let (tilt_sine, tilt_cosine) = libm::sincos(tilt);
         let level = y * tilt_cosine;
         let of_level = of_y * tilt_cosine - y * tilt_sine * of_tilt;
@@ -136,7 +132,7 @@ impl Ephemeris {
         }
     }
 
-    /// Geocentric gravitational constant that the message is made for, m³/s².
+    /// The geocentric gravitational constant that the message assumes, m³/s².
     const fn gravity(&self) -> f64 {
         match self.constellation {
             Constellation::Gps => 3.986_005e14,
@@ -146,7 +142,7 @@ impl Ephemeris {
         }
     }
 
-    /// Rotation of the Earth that the message is made for, rad/s.
+    /// The rotation rate of the Earth that the message assumes, rad/s.
     const fn rotation(&self) -> f64 {
         match self.constellation {
             Constellation::BeiDou => 7.292_115_0e-5,
@@ -154,16 +150,16 @@ impl Ephemeris {
         }
     }
 
-    /// By how much the week of its time begins later than that of GPS, s.
+    /// By how much the system's week begins later than that of GPS, s.
     const fn behind(&self) -> f64 {
         match self.constellation {
-            Constellation::BeiDou => BEIDOU_BEHIND,
+            Constellation::BeiDou => GpsTime::BEIDOU_BEHIND,
             _ => 0.0,
         }
     }
 }
 
-/// Cosine and sine of twice an argument of latitude, and the rate of that.
+/// The cosine and sine of twice the argument of latitude, and the rate of that angle.
 #[derive(Clone, Copy, Debug)]
 struct Harmonic {
     sine: f64,
@@ -177,7 +173,7 @@ impl Harmonic {
         Self { sine, cosine, rate: 2.0 * rate }
     }
 
-    /// What a cosine and a sine term add, and the rate of it.
+    /// The sum of a cosine and a sine term, and its rate.
     fn of_terms(&self, [cosine, sine]: [f64; 2]) -> [f64; 2] {
         [
             cosine * self.cosine + sine * self.sine,
@@ -196,18 +192,12 @@ fn kepler(mean: f64, eccentricity: f64) -> f64 {
     anomaly
 }
 
-/// Seconds since the week of GPS time began.
-fn second_of_week(time: GpsTime) -> f64 {
-    let day = time.day().saturating_sub(FIRST_WEEK).rem_euclid(7);
-    f64::from(day) * DAY + time.second()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{carried_along, eccentricity_clock};
 
-    /// What G01 broadcast for 4 o'clock on 25 June 2020, as the station ESBC had it.
+    /// The ephemeris that G01 broadcast for 4 o'clock on 25 June 2020, from the station ESBC.
     fn real() -> Ephemeris {
         let time = GpsTime::new_in_day(59_025, 14_400.0);
         Ephemeris {
@@ -240,7 +230,7 @@ mod tests {
             let at = ephemeris.time.plus(second);
             let half = 0.5;
             let [before, after] = [-half, half].map(|away| {
-                // In the axes of the time between.
+                // In the ECEF axes of the middle instant.
                 carried_along(&ephemeris.orbit_at(at.plus(away)).position, -away)
             });
             let velocity = (after - before) / (2.0 * half);
@@ -268,7 +258,8 @@ mod tests {
         assert!((after - before).norm() < 4_000.0);
     }
 
-    /// The same elements as BeiDou's: its week begins 14 s later, and the Earth turns by another number.
+    /// The same elements as those of a BeiDou satellite: the week begins 14 s later, and the Earth's rotation rate
+    /// differs.
     #[test]
     fn of_beidou_the_week_and_the_constants_are_its_own() {
         let of = |constellation| Ephemeris { constellation, ..real() };
@@ -276,7 +267,7 @@ mod tests {
         for second in [-3_000.0, 0.0, 3_000.0] {
             let at = galileo.time.plus(second);
             let turned = galileo.orbit_at(at).position;
-            let since = 4.0 * DAY + 14_400.0 + second;
+            let since = 4.0 * 86_400.0 + 14_400.0 + second;
             let angle = EARTH_ROTATION * since - 7.292_115e-5 * (since - 14.0);
             let expected = carried_along(&turned, -angle / EARTH_ROTATION);
             let found = beidou.orbit_at(at).position;

@@ -5,23 +5,28 @@ use crate::constants::SPEED_OF_LIGHT;
 /// Carrier frequencies of L1 and L2 of GPS, Hz (IS-GPS-200).
 pub const FREQUENCY: [f64; 2] = [1_575.42e6, 1_227.60e6];
 
-/// Wavelengths of L1 and L2, m.
+/// Wavelengths of L1 and L2 of GPS, m.
 pub const WAVELENGTH: [f64; 2] = [SPEED_OF_LIGHT / FREQUENCY[0], SPEED_OF_LIGHT / FREQUENCY[1]];
 
-/// E5a and E5b of Galileo, Hz (Galileo OS SIS ICD); E1 is L1. B2a and B2I of BeiDou are on the same frequencies.
+/// The frequency of E5a of Galileo, Hz (Galileo OS SIS ICD), and of B2a of BeiDou; E1 is L1.
 const E5A: f64 = 1_176.45e6;
+/// The frequency of E5b of Galileo, Hz (Galileo OS SIS ICD), and of B2I of BeiDou.
 const E5B: f64 = 1_207.14e6;
 
-/// G1 and G2 of GLONASS on channel 0, Hz (GLONASS ICD L1, L2, 3.3.1.1), and the step of a channel, as a share of either.
+/// The frequency of G1 of GLONASS on channel 0, Hz (GLONASS ICD L1, L2, 3.3.1.1).
 const G1: f64 = 1_602e6;
+/// The frequency of G2 of GLONASS on channel 0, Hz (GLONASS ICD L1, L2, 3.3.1.1).
 const G2: f64 = 1_246e6;
+/// The frequency step of a GLONASS channel, as a share of either carrier.
 const CHANNEL: f64 = 1.0 / 2_848.0;
-/// How many channels there are, and the place of channel 0 among them.
+/// The number of GLONASS channels.
 const CHANNELS: usize = 14;
+/// The index of channel 0 among the GLONASS channels.
 const CHANNEL_0: usize = 7;
 
-/// B1I and B3I of BeiDou, Hz (BDS-SIS-ICD-B1I, B3I); B1C is on L1.
+/// The frequency of B1I of BeiDou, Hz (BDS-SIS-ICD-B1I); B1C is on L1.
 const B1I: f64 = 1_561.098e6;
+/// The frequency of B3I of BeiDou, Hz (BDS-SIS-ICD-B3I).
 const B3I: f64 = 1_268.52e6;
 
 /// A satellite system.
@@ -70,16 +75,16 @@ pub enum Carriers {
     B1cB2a,
 }
 
-/// What the combinations of a pair are made of.
+/// The constants of a pair of carriers and its combinations.
 #[derive(Clone, Copy)]
 struct Pair {
     frequency: [f64; 2],
     wavelength: [f64; 2],
-    /// f1²/(f1² − f2²).
+    /// The weight of the first carrier in the ionosphere-free combination: f1²/(f1² − f2²).
     share: f64,
-    /// c/(f1 + f2), m: a cycle on both carriers in the ionosphere-free phase.
+    /// The narrow lane c/(f1 + f2), m: a cycle on both carriers in the ionosphere-free phase.
     narrow_lane: f64,
-    /// c/(f1 − f2), m.
+    /// The wide lane c/(f1 − f2), m.
     wide_lane: f64,
 }
 
@@ -98,7 +103,7 @@ impl Pair {
 static L1L2: Pair = Pair::new(FREQUENCY[0], FREQUENCY[1]);
 static E1E5A: Pair = Pair::new(FREQUENCY[0], E5A);
 static E1E5B: Pair = Pair::new(FREQUENCY[0], E5B);
-/// From the lowest channel on.
+/// The GLONASS pairs by channel, from the lowest on.
 static G1G2: [Pair; CHANNELS] = {
     let mut pairs = [Pair::new(G1, G2); CHANNELS];
     let mut place = 0;
@@ -113,13 +118,14 @@ static B1B3: Pair = Pair::new(B1I, B3I);
 static B1B2: Pair = Pair::new(B1I, E5B);
 
 impl Carriers {
+    #[inline(never)] // Not once for each combination.
     const fn pair(self) -> &'static Pair {
         match self {
             Self::L1L2 => &L1L2,
             Self::E1E5a | Self::B1cB2a => &E1E5A,
             Self::E1E5b => &E1E5B,
             Self::G1G2 { channel } => {
-                // Below the lowest channel this is a large number.
+                // Below the lowest channel this wraps to a large number.
                 let place = channel.wrapping_add(CHANNEL_0 as i8) as u8 as usize;
                 &G1G2[if place < CHANNELS { place } else { CHANNEL_0 }]
             }
@@ -128,7 +134,7 @@ impl Carriers {
         }
     }
 
-    /// The system whose satellites send them.
+    /// The system whose satellites transmit the carriers.
     pub const fn constellation(self) -> Constellation {
         match self {
             Self::L1L2 => Constellation::Gps,
@@ -138,27 +144,28 @@ impl Carriers {
         }
     }
 
-    /// Their frequencies, Hz; of GLONASS on a channel that there is not, those of channel 0.
+    /// The frequencies, Hz; for a GLONASS channel that does not exist, those of channel 0.
     pub const fn frequency(self) -> [f64; 2] {
         self.pair().frequency
     }
 
-    /// Their wavelengths, m.
+    /// The wavelengths, m.
     pub const fn wavelength(self) -> [f64; 2] {
         self.pair().wavelength
     }
 
-    /// Wavelength of the narrow lane, c/(f1 + f2), m: a cycle on both carriers in the ionosphere-free phase.
+    /// The wavelength of the narrow lane, c/(f1 + f2), m: a cycle on both carriers in the ionosphere-free phase.
     pub const fn narrow_lane(self) -> f64 {
         self.pair().narrow_lane
     }
 
-    /// Wavelength of the wide lane φ1 − φ2, c/(f1 − f2), m.
+    /// The wavelength of the wide lane φ1 − φ2, c/(f1 − f2), m.
     pub const fn wide_lane(self) -> f64 {
         self.pair().wide_lane
     }
 
-    /// (f1²·a1 − f2²·a2)/(f1² − f2²): free of the ionosphere to first order (codes or phases, m).
+    /// The ionosphere-free combination (f1²·a1 − f2²·a2)/(f1² − f2²) of codes or phases, m: free of the ionosphere to
+    /// first order.
     pub const fn ionosphere_free(self, both: [f64; 2]) -> f64 {
         let share = self.pair().share;
         share * both[0] - (share - 1.0) * both[1]
@@ -170,7 +177,8 @@ impl Carriers {
         self.ionosphere_free([wavelength[0] * phase[0], wavelength[1] * phase[1]])
     }
 
-    /// The first phase less the second, m: free of all that is common to both carriers; the ionosphere and slips remain.
+    /// The geometry-free combination, the first phase minus the second, m: free of all that is common to both carriers;
+    /// the ionosphere and slips remain.
     ///
     /// `phase` in cycles.
     pub const fn geometry_free(self, phase: [f64; 2]) -> f64 {
@@ -178,8 +186,8 @@ impl Carriers {
         wavelength[0] * phase[0] - wavelength[1] * phase[1]
     }
 
-    /// The Melbourne–Wübbena combination: φ1 − φ2 less what the codes say of it, in cycles of the wide
-    /// lane: free of geometry and ionosphere; code noise and slips remain.
+    /// The Melbourne–Wübbena combination: φ1 − φ2 minus its value from the codes, in cycles of the wide lane. It is
+    /// free of geometry and ionosphere; code noise and slips remain.
     ///
     /// `phase` in cycles, `code` in m.
     pub const fn melbourne_wuebbena(self, phase: [f64; 2], code: [f64; 2]) -> f64 {

@@ -1,10 +1,14 @@
-/// Seconds of a day.
+/// The length of a day, s.
 const DAY: f64 = 86_400.0;
+/// The length of a week, s.
+const WEEK: f64 = 604_800.0;
+/// The first day (modified Julian date) of the first GPS week.
+const FIRST_WEEK: i32 = 44_244;
 
 /// An instant in GPS time: the day counted as a modified Julian date, and the second of that day.
 ///
-/// One number of seconds could not hold both a century and a nanosecond, in which a satellite moves
-/// by micrometres.
+/// A single number of seconds could not resolve a nanosecond, in which a satellite moves by micrometres, over a
+/// century.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -14,17 +18,20 @@ pub struct GpsTime {
 }
 
 impl GpsTime {
-    /// The instant `second` seconds after the midnight that begins day `day` (modified Julian date),
-    /// brought into its own day.
+    /// The offset of GPS time from BeiDou time, s: BeiDou time is behind.
+    pub const BEIDOU_BEHIND: f64 = 14.0;
+
+    /// The instant `second` seconds after the midnight that begins day `day` (modified Julian date), normalised to its
+    /// own day.
     ///
-    /// A second that is not finite or is beyond ten thousand years stays as it is: what is computed
-    /// with it will not be finite or far from anything.
+    /// A second that is not finite or is beyond ten thousand years is kept as it is: what is computed with it will not
+    /// be finite, or be far from everything.
     pub fn new(day: i32, second: f64) -> Self {
         let days = libm::floor(second / DAY);
         if days == 0.0 || !(-4e6..4e6).contains(&days) {
             return Self { day, second };
         }
-        // A tiny negative second rounds up to a whole day.
+        // A tiny negative second rounds to a whole day.
         let second = second - days * DAY;
         let (days, second) = if second < DAY { (days, second) } else { (days + 1.0, 0.0) };
         Self { day: day.saturating_add(days as i32), second }
@@ -43,6 +50,18 @@ impl GpsTime {
     /// The second of the day, from 0 below 86 400.
     pub const fn second(self) -> f64 {
         self.second
+    }
+
+    /// Seconds since the beginning of the GPS week.
+    pub fn second_of_week(self) -> f64 {
+        let day = self.day.saturating_sub(FIRST_WEEK).rem_euclid(7);
+        f64::from(day) * DAY + self.second
+    }
+
+    /// The instant nearest to this one with a given second of the week, for messages that do not tell the week.
+    pub fn nearest_second_of_week(self, second: f64) -> Self {
+        let away = second - self.second_of_week();
+        self.plus(away - libm::round(away / WEEK) * WEEK)
     }
 
     /// This instant `seconds` later.
@@ -75,6 +94,17 @@ mod tests {
             GpsTime::new(59_025, 0.0).plus(90_000.0).since(GpsTime::new(59_025, 3_600.0)),
             86_400.0
         );
+    }
+
+    #[test]
+    fn a_second_of_the_week_is_the_nearest_one() {
+        // A Thursday at noon.
+        let noon = GpsTime::new(59_025, 43_200.0);
+        assert_eq!(noon.second_of_week(), 4.0 * 86_400.0 + 43_200.0);
+        let away = |second| noon.nearest_second_of_week(second).since(noon);
+        assert_eq!([away(388_800.0), away(388_801.0), away(388_700.0)], [0.0, 1.0, -100.0]);
+        // Within half a week, across its ends.
+        assert_eq!([away(0.0), away(86_390.0), away(86_410.0)], [216_000.0, 302_390.0, -302_390.0]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
 
+mod broadcast;
 mod channel;
 mod clock_jump;
 mod collected;
@@ -27,6 +28,7 @@ mod start;
 mod states;
 mod weighting;
 
+pub use broadcast::{Broadcast, MessagePart, NoEphemeris};
 pub use config::{Config, Deviation, Motion};
 pub use error::Error;
 pub use estimator::Estimator;

@@ -8,7 +8,7 @@ use crate::{Config, Contradiction, Health, Motion, SatelliteReport, Solution};
 use kestirim_gnss_ppp::Site;
 use nalgebra::Matrix3;
 
-/// Standard deviation of a position whose ambiguities are known, m.
+/// The standard deviation below which a position has converged ambiguities, m.
 const CONVERGED: f64 = 0.1;
 
 impl<const N: usize> Running<N> {
@@ -37,7 +37,7 @@ impl<const N: usize> Running<N> {
         let contradiction = self.consistency.contradiction();
         let rests = matches!(config.motion, Motion::Static) && contradiction.is_none();
         if rests && spread < CONVERGED {
-            self.rest.stay(&position, spread);
+            self.rest.stay(&position, &covariance);
         }
         let moved = self.rest.has_moved(&position).then_some(Contradiction::Motion);
         let heard = decisions.iter().filter(|[_, phase]| phase.weight > 0.0).count();
@@ -66,10 +66,11 @@ impl<const N: usize> Running<N> {
         }
     }
 
-    /// By how much the filter's own variances are too small, as it takes each epoch's errors for new.
+    /// The factor by which the filter's own variances are too small, as it treats the errors of each epoch as
+    /// independent.
     ///
-    /// Within the correlation time τ they are the same: n epochs Δt apart tell as much as n·Δt/2τ. A
-    /// position that moves does not average them; what it owes to the ambiguities does.
+    /// Within the correlation time τ errors are the same: n epochs Δt apart are worth n·Δt/2τ independent ones. A
+    /// moving position does not average them; its part that depends on the ambiguities does.
     pub(crate) fn repetition(&self, config: &Config<impl Sized>) -> f64 {
         let repeated = match self.interval {
             Some(interval) => 1.0 + 2.0 * config.correlation_time / interval,

@@ -20,7 +20,8 @@ const STACK_BYTES: usize = 16 << 20;
 const LOWEST_HZ: f64 = 30e6;
 const HIGHEST_HZ: f64 = 30e9;
 
-/// A flight: t (n,), place (n, 2), height (n,), and what was measured (n,): losses, or levels if `levels`; at a frequency, Hz.
+/// Locates the user from a flight: t (n,), place (n, 2), height (n,), and the measured value (n,), which is a path
+/// loss, or a level if `levels`; at a frequency, Hz.
 #[pyfunction]
 #[pyo3(signature = (t, place, height, value, heading, levels, area, environment, frequency, window, every))]
 pub(crate) fn drone<'py>(

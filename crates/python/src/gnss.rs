@@ -18,7 +18,7 @@ use crate::error::{KestirimError, refused, unknown};
 /// The stack size of the thread that filters, bytes.
 const STACK_BYTES: usize = 16 << 20;
 
-/// A receiver's positions.
+/// Computes the positions of a receiver.
 #[pyfunction]
 #[pyo3(signature = (obs, sp3, antex, nav, clk, bias, blq, erp, process_noise, method, filter, systems, ambiguities, mask, gradient, until, smooth))]
 pub(crate) fn gnss<'py>(

@@ -20,7 +20,7 @@ mod uav;
 
 use pyo3::prelude::*;
 
-/// The module.
+/// The Python module `kestirim._kestirim`.
 #[pymodule]
 mod _kestirim {
     use super::{Bound, PyModule, PyModuleMethods, PyResult};

@@ -12,7 +12,7 @@ use pyo3::types::PyDict;
 use crate::arrays::{Results, sentences};
 use crate::error::{KestirimError, refused};
 
-/// A log, whatever wrote it.
+/// Reads a log in any known format.
 #[pyfunction]
 #[pyo3(signature = (path, columns, units, format, topic, strict))]
 pub(crate) fn read_imu<'py>(

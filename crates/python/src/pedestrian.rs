@@ -12,7 +12,7 @@ use crate::arrays::{
 };
 use crate::error::{KestirimError, refused_at, unknown};
 
-/// A walk.
+/// Tracks a walk.
 #[pyfunction]
 #[pyo3(signature = (t, accel, gyro, mag, sensor, causal, tracker, contact_height, scalar))]
 pub(crate) fn pedestrian<'py>(
@@ -45,7 +45,8 @@ pub(crate) fn pedestrian<'py>(
     };
     let samples = samples(values(&t)?, rows(&accel)?, rows(&gyro)?)?;
     let field = mag.as_ref().map(rows::<3>).transpose()?;
-    // A heading is corrected afterwards, and that of the other trackers does not drift at a constant rate.
+    // The heading is corrected afterwards, so not causally; and the heading of the other trackers does not drift at a
+    // constant rate.
     let field = field.filter(|_| !causal && options.tracker == TrackerKind::Ekf);
     let found = py.detach(|| -> Result<(Trace, Vec<Finding>), Error> {
         let mut found = trace(&samples, &options)?;

@@ -16,7 +16,7 @@ use crate::error::{KestirimError, refused_at};
 /// The hint for ranges that do not determine the height.
 const MISSING: &str = "expected height, metres above the floor (or dim=3)";
 
-/// A tag's track.
+/// Tracks a tag.
 #[pyfunction]
 #[pyo3(signature = (anchors, t, anchor, range, height, heights, biases, imu, wheels, room, dim, scalar, smooth))]
 pub(crate) fn robot<'py>(

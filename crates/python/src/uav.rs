@@ -18,7 +18,7 @@ use crate::arrays::{
 };
 use crate::error::{KestirimError, refused, refused_at, unknown};
 
-/// A known aircraft's A, B, and the state and input of its steady flight if that is known.
+/// The matrices A and B of a known aircraft, and the state and input of its steady flight, if known.
 #[pyfunction]
 pub(crate) fn uav_model<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyDict>> {
     let plant = match name {
@@ -35,7 +35,8 @@ pub(crate) fn uav_model<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py,
     Ok(Results::new(py).table::<4>("a", a)?.table::<2>("b", b)?.with("trim", trim)?.done())
 }
 
-/// A flight. Values are deviations from the model's steady flight if there is no `trim`, which is taken from them.
+/// Estimates the states of a flight. Values are absolute if `trim` is given, which is then subtracted; otherwise they
+/// are deviations from the model's steady flight.
 #[pyfunction]
 #[pyo3(signature = (t, inputs, measured, a, b, c, interval, trim, estimator, poles, input_noise, output_noise, ratio, scalar))]
 pub(crate) fn uav<'py>(

@@ -1,26 +1,27 @@
-//! An estimator that follows a stream while it comes.
+//! Estimators that follow a live stream.
 
 use std::fmt::Debug;
 
+use kestirim_health::Health;
 use kestirim_telemetry::Message;
 
 use crate::Error;
 use crate::figure::Series;
 
-/// All that an estimator is built from, to build it again when the sender begins anew.
+/// All that is needed to build an estimator, and to rebuild it when the sender restarts.
 pub trait Plan: Debug + Send + Sync {
-    /// A fresh estimator.
+    /// Builds a fresh estimator.
     ///
     /// # Errors
-    /// If the settings or files will not do.
+    /// An error if the settings or files are unsuitable.
     fn build(&self) -> Result<Box<dyn Online>, Error>;
 
-    /// What is drawn on the map before anything is known.
+    /// The series drawn on the map before any measurement has arrived.
     fn map(&self) -> Vec<Series> {
         Vec::new()
     }
 
-    /// What was assumed because nobody said otherwise.
+    /// Assumptions made because nothing else was specified.
     fn assumptions(&self) -> Vec<String> {
         Vec::new()
     }
@@ -28,49 +29,49 @@ pub trait Plan: Debug + Send + Sync {
 
 /// An estimator that follows a stream.
 pub trait Online: Debug {
-    /// Takes in a measurement.
+    /// Processes a measurement.
     fn take(&mut self, message: &Message) -> Outcome;
 
-    /// Takes in bytes of a device's own stream, of a system that [hears them](super::System::HEARS_BYTES).
+    /// Processes bytes of a device's own stream, for a system that [decodes them itself](super::System::HEARS_BYTES).
     fn hear(&mut self, _bytes: &[u8]) {}
 
-    /// How many epochs or messages it made of all bytes, and how many of them it took in.
+    /// The number of epochs or messages decoded from the bytes, and how many of them were used.
     fn heard(&self) -> [u32; 2] {
         [0; 2]
     }
 
-    /// Nothing more is there for now: time for what takes long.
+    /// Performs lengthy work while no more input is waiting.
     fn settle(&mut self) {}
 
-    /// The stream has ended.
+    /// Ends the stream.
     ///
     /// # Errors
-    /// If something that was to be written at its end cannot be.
+    /// An error if output that is due at the end cannot be written.
     fn finish(&mut self) -> Result<(), Error> {
         Ok(())
     }
 
-    /// The position now, m: z up, or of a receiver of satellites ECEF.
+    /// The current position (m): with z up, or for a satellite receiver in ECEF.
     fn position(&self) -> Option<[f64; 3]> {
         None
     }
 
-    /// Where that is on the map, m.
+    /// The current position on the map (m).
     fn place(&self) -> Option<[f64; 2]> {
         self.position().map(|[x, y, _]| [x, y])
     }
 
-    /// Standard deviation of a horizontal component of the position (m), of an estimator that knows it.
+    /// The standard deviation of a horizontal component of the position (m), if the estimator knows it.
     fn sigma_m(&self) -> Option<f64> {
         None
     }
 
-    /// Angle of attack, pitch rate, airspeed and pitch now: rad, rad/s, m/s, rad.
+    /// The current angle of attack, pitch rate, airspeed and pitch angle: rad, rad/s, m/s, rad.
     fn state(&self) -> Option<[f64; 4]> {
         None
     }
 
-    /// Whether the sensor stands still.
+    /// Whether the sensor is stationary.
     fn is_still(&self) -> bool {
         false
     }
@@ -80,43 +81,50 @@ pub trait Online: Debug {
         None
     }
 
-    /// Numbers with their units, by name.
+    /// The doubts about the estimate; `None` while there is none, if the estimator does not judge itself, or if it is one of the
+    /// [`facts`](Self::facts).
+    fn health(&self) -> Option<Health> {
+        None
+    }
+
+    /// Results by name, with their units.
     fn facts(&self) -> Vec<(String, String)> {
         Vec::new()
     }
 
-    /// What is suspicious about the stream.
+    /// Warnings about the stream.
     fn warnings(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// All that it needs to go on elsewhere, to the bit.
+    /// The complete state of the estimator, for resuming elsewhere bit for bit.
     ///
     /// # Errors
-    /// Why it cannot be stored.
+    /// The reason why the state cannot be stored.
     fn snapshot(&self) -> Result<Vec<u8>, String> {
         Err("its estimator cannot be stored".to_owned())
     }
 
-    /// Goes on as the one that was stored; none, and as before, if these bytes are no snapshot of such a one.
+    /// Resumes from a stored state; returns `None` and changes nothing if the bytes are not a snapshot of such an
+    /// estimator.
     fn restore(&mut self, _snapshot: &[u8]) -> Option<()> {
         None
     }
 }
 
-/// What an estimator did with a message.
+/// The effect of a message on an estimator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// It is not for this estimator.
+    /// The message is not for this estimator.
     NotMine,
-    /// It made a difference.
+    /// The message was used.
     Taken,
-    /// It cannot be true, or came too late.
+    /// The message was rejected as implausible or too late.
     Refused,
 }
 
 impl Outcome {
-    /// Taken or refused.
+    /// Taken if `taken`, refused otherwise.
     pub const fn taken(taken: bool) -> Self {
         if taken { Self::Taken } else { Self::Refused }
     }
@@ -125,24 +133,24 @@ impl Outcome {
 /// A figure of a stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Panel {
-    /// Where everything is.
+    /// A map of positions.
     Map,
-    /// Specific forces.
+    /// The specific forces.
     Forces,
-    /// Angular rates.
+    /// The angular rates.
     Rates,
-    /// Ranges to anchors.
+    /// The ranges to anchors.
     Ranges,
-    /// Path losses.
+    /// The path losses.
     Losses,
-    /// Angles and rates of an aircraft.
+    /// The angles and rates of an aircraft.
     Angles,
-    /// Its airspeed.
+    /// The airspeed of an aircraft.
     Airspeed,
 }
 
 impl Panel {
-    /// All, as shown when nobody says which system sends.
+    /// All panels, which are shown if the system that sends is not specified.
     pub const ALL: [Self; 7] = [
         Self::Map,
         Self::Forces,

@@ -1,8 +1,10 @@
-//! Whatever is fed in, no crate panics or overflows, and a step that is refused leaves the state as it was (where
-//! `try_on` takes it): everything that a crate offers (`tests/firmware/surface`) is called with numbers drawn at random, NaN, infinities
-//! and the rails of fixed point among them. Tests are built with overflow checks.
+//! Feeds arbitrary numbers to all crates: none panics or overflows, and a refused step leaves the state unchanged
+//! (where `try_on` takes it).
 //!
-//! `KESTIRIM_SEEDS` sets how often, `kalman` a seventh as often; a failure names the seed it happened at.
+//! Everything that a crate offers (`tests/firmware/surface`) is called with random numbers, including NaN, infinities
+//! and the limits of fixed point. Tests are built with overflow checks.
+//!
+//! `KESTIRIM_SEEDS` sets the number of calls, a seventh of which are made of `kalman`; a failure names its seed.
 
 use std::env;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -13,13 +15,14 @@ use target_bench::is_short;
 #[path = "../../firmware/surface/src/all.rs"]
 mod surface;
 
-/// How often each crate's functions are called, unless told otherwise; in the short form a third of that.
+/// The default number of times that each crate's functions are called; a third of that in the short form.
 const SEEDS: u64 = 300;
 
-/// One in so many numbers is wild: none to speak of, some, many.
+/// One in this many numbers is extreme: practically none, some, many.
 const TAME: [u64; 4] = [1_000_000, 100, 20, 3];
 
-/// In so many `kalman`'s are called once: its gain of a steady state takes a hundred thousand steps where there is none.
+/// `kalman`'s functions are called once in this many rounds: where there is no steady state, its steady-state gain
+/// takes a hundred thousand steps.
 const SEEDS_OF_KALMAN: u64 = 7;
 
 fn seeds() -> u64 {
@@ -49,7 +52,7 @@ macro_rules! test_each {
 }
 
 test_each!(
-    adaptive_kalman air_to_ground arithmetic attitude gnss_ppp health imu_calibration integer_ambiguity luenberger luenberger_f64
+    adaptive_kalman air_to_ground arithmetic attitude gnss_message gnss_ppp health imu_calibration integer_ambiguity luenberger luenberger_f64
     observer_design particle_filter pedestrian ppp_filter robust_kalman scalar scalar_f64 snapshot telemetry uav_estimator
     uav_longitudinal user_locator uwb_ranging uwb_tracker
 );

@@ -1,12 +1,12 @@
-//! Positions with what satellites broadcast, beside those with precise orbits and clocks.
+//! Positions with broadcast ephemerides, compared with those from precise orbits and clocks.
 //!
-//! Ephemerides are fitted to the precise products of ESBC's day: they show that the chain is right, and nothing of how far
-//! real satellites are from what they say.
+//! The ephemerides are fitted to the precise products of ESBC's day: they show that the processing chain is right, but
+//! not how accurate real broadcasts are.
 //!
-//! The recordings stand beside the repository in `../shared/data/gnss`. Where they are absent these tests say
-//! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
+//! The recordings are in `../shared/data/gnss`, beside the repository. Where they are absent these tests print SKIPPED
+//! and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
-mod fit;
+pub(crate) mod fit;
 
 use std::path::{Path, PathBuf};
 
@@ -20,10 +20,10 @@ use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;
 
 const KINEMATIC: Motion = Motion::Kinematic { process_noise: 100.0 };
-/// Until when ephemerides are fitted, s.
+/// The time up to which ephemerides are fitted, s.
 const UNTIL: f64 = 82_800.0;
 
-/// The observations of a station with a navigation file in place of products.
+/// The observations of a station with a navigation file instead of products.
 fn with_navigation(folder: &Path, station: Station, navigation: &str) -> Recording {
     let file = tempfile::NamedTempFile::new().expect("a temporary file");
     std::fs::write(file.path(), navigation).expect("a file can be written");
@@ -41,7 +41,8 @@ fn with_navigation(folder: &Path, station: Station, navigation: &str) -> Recordi
     .expect("all can be read")
 }
 
-/// By how much the ranges of an epoch's satellites differ from those of precise products, m, beside what all have in common.
+/// The differences of the ranges of an epoch's satellites from those of precise products, m, without the part that all
+/// have in common.
 fn off(broadcast: &Recording, precise: &Recording, epoch: &Epoch) -> Vec<f64> {
     let truth = Vector3::from(ESBC.truth);
     let receiver = precise.receiver(Corrections::ALL);
@@ -60,7 +61,7 @@ fn off(broadcast: &Recording, precise: &Recording, epoch: &Epoch) -> Vec<f64> {
     both.iter().map(|(system, off)| off - means[usize::from(*system)]).collect()
 }
 
-/// Follows a recording and tells errors, m, and errors over deviations.
+/// Follows a recording and prints errors, m, and errors over standard deviations.
 fn followed(
     what: &str,
     recording: &Recording,

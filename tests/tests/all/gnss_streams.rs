@@ -1,7 +1,7 @@
-//! A day that was recorded as RINEX, told again as RTCM 3 (MSM7) and as UBX (RXM-RAWX), gives the same positions.
+//! A day that was recorded as RINEX, re-encoded as RTCM 3 (MSM7) and as UBX (RXM-RAWX), gives the same positions.
 //!
-//! The recordings stand beside the repository in `../shared/data/gnss`. Where they are absent these tests say
-//! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
+//! The recordings are in `../shared/data/gnss`, beside the repository. Where they are absent these tests print SKIPPED
+//! and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
 use std::collections::BTreeMap;
 use std::io::Read as _;
@@ -23,27 +23,28 @@ use rtcm_rs::Message;
 use rtcm_rs::MessageBuilder;
 use rtcm_rs::msg::{GpsSigId, Msg1019T, Msg1077Data, Msg1077Sig, Msg1077T, Msm57Sat};
 
-/// The week of the day, and when it began.
+/// The GPS week of the day, and the day on which it began.
 const WEEK: u16 = 2_111;
 const SUNDAY: i32 = 59_021;
-/// What a message of UBX tells at most of how long a phase was tracked, ms.
+/// The largest lock time of a phase that a UBX message can hold, ms.
 const LONGEST_LOCK: u16 = 64_500;
 
-/// Since when a phase has been tracked, s, and how many cycles it is shifted by: a format tells phases near codes alone.
+/// The time since when a phase has been tracked, s, and its shift in cycles: a format can only encode phases close to
+/// the codes.
 #[derive(Default)]
 struct Tracked(BTreeMap<(u8, usize), (f64, f64)>);
 
-/// A phase is told when it has been tracked for so long, s.
+/// The tracking time after which a phase is sent, s.
 const TRACKED_BEFORE: f64 = 1.0;
 
-/// The indicator of MSM7 of how long a phase was tracked (DF407), s.
+/// The lock-time indicator of MSM7 (DF407) for a phase tracked for this time, s.
 fn indicator(tracked: f64) -> u16 {
     let milliseconds = (1e3 * tracked).round() as u32;
     let step = milliseconds.max(32).ilog2() - 5;
     (32 * step + (milliseconds >> step)).min(704) as u16
 }
 
-/// The observations as RINEX, without what streams do not tell: the antenna, and where it stands.
+/// The observations as RINEX, without what streams lack: the antenna and its position.
 fn rinex(folder: &Path) -> String {
     let mut text = String::new();
     let file = std::fs::File::open(folder.join(ESBC.observations)).expect("a recording");
@@ -115,10 +116,10 @@ fn frame(message: &Message) -> Vec<u8> {
     MessageBuilder::new().build_message(message).expect("a message").to_vec()
 }
 
-fn ubx(epochs: &[Epoch]) -> Vec<u8> {
+/// The messages UBX-RXM-RAWX of epochs.
+pub(super) fn ubx(epochs: &[Epoch]) -> Vec<Vec<u8>> {
     let mut tracked = Tracked::default();
-    let mut stream = Vec::new();
-    for epoch in epochs {
+    let message = |epoch: &Epoch| {
         let begun = second_of_week(epoch) - TRACKED_BEFORE;
         let mut signals = Vec::new();
         for observed in &epoch.satellites {
@@ -143,15 +144,20 @@ fn ubx(epochs: &[Epoch]) -> Vec<u8> {
         held.extend(WEEK.to_le_bytes());
         held.extend([18, (signals.len() / 32) as u8, 1, 1, 0, 0]);
         held.extend(signals);
-        let length = (held.len() as u16).to_le_bytes();
-        let summed = [&[0x02, 0x15, length[0], length[1]], &*held].concat();
-        let sums = summed.iter().fold([0_u8; 2], |[a, b], byte| {
-            let a = a.wrapping_add(*byte);
-            [a, b.wrapping_add(a)]
-        });
-        stream.extend([&[0xb5, 0x62], &*summed, &sums].concat());
-    }
-    stream
+        ubx_frame(0x15, &held)
+    };
+    epochs.iter().map(message).collect()
+}
+
+/// A frame of UBX of the class RXM.
+pub(super) fn ubx_frame(id: u8, held: &[u8]) -> Vec<u8> {
+    let length = (held.len() as u16).to_le_bytes();
+    let summed = [&[0x02, id, length[0], length[1]], held].concat();
+    let sums = summed.iter().fold([0_u8; 2], |[a, b], byte| {
+        let a = a.wrapping_add(*byte);
+        [a, b.wrapping_add(a)]
+    });
+    [&[0xb5, 0x62], &*summed, &sums].concat()
 }
 
 fn positions(folder: &Path, observations: &[u8], config: &Config) -> Followed {
@@ -179,7 +185,7 @@ fn streams_give_what_rinex_gives() {
     let config = Config::new(Motion::Static);
     let told = positions(&folder, text.as_bytes(), &config);
     for (format, stream) in
-        [("RTCM", rtcm(&observations.epochs)), ("UBX", ubx(&observations.epochs))]
+        [("RTCM", rtcm(&observations.epochs)), ("UBX", ubx(&observations.epochs).concat())]
     {
         let found = positions(&folder, &stream, &config);
         assert_eq!(found.fixes.len(), told.fixes.len());
@@ -195,7 +201,8 @@ fn streams_give_what_rinex_gives() {
     }
 }
 
-/// Pieces of a stream, bytes, as a line brings them; after so many of them nothing comes for a moment.
+/// The size of the pieces of a stream as a line delivers them, bytes, and the number of pieces after which there is a
+/// pause.
 const PIECE: usize = 700;
 const PIECES: usize = 9;
 
@@ -204,12 +211,12 @@ fn a_stream_that_comes_gives_what_it_gives_as_a_recording() {
     let Some(folder) = folder_of("gnss") else { return };
     let text = kestirim_gnss_files::Text::unpack("day.rnx", rinex(&folder).into_bytes());
     let observations = text.and_then(|text| Observations::parse(&text)).expect("observations");
-    // Twice as long as what is kept of a stream.
+    // Twice the part of a stream that is kept.
     let epochs = &observations.epochs[..720];
     let gnss = ALL.iter().find(|system| system.name() == "gnss").expect("the system");
     let settings = Settings::new(gnss.settings());
     let setup = Setup::of(&settings);
-    for (format, stream) in [("RTCM", rtcm(epochs)), ("UBX", ubx(epochs))] {
+    for (format, stream) in [("RTCM", rtcm(epochs)), ("UBX", ubx(epochs).concat())] {
         let told = positions(&folder, &stream, &setup.config(setup.main()));
         let plan = gnss.online(&settings, &ESBC.products(&folder)).expect("a plan");
         let mut online = plan.expect("a follower").build().expect("an estimator");

@@ -1,12 +1,12 @@
-//! GLONASS and BeiDou beside GPS and Galileo.
+//! GLONASS and BeiDou in addition to GPS and Galileo.
 //!
-//! Products of the recorded days have orbits and clocks of GLONASS, and those of one have BeiDou's, but none of the antenna
-//! files has their satellites. They are given the offsets that all satellites of a type have nearly in common, which a file of
-//! the IGS would tell to some centimetres, and of each satellite: what is measured here is therefore no better than what such a
-//! file gives.
+//! Products of the recorded days have orbits and clocks of GLONASS, and those of one have BeiDou's, but none of the
+//! antenna files has their satellites. They are given offsets that all satellites of a type nearly share; a file of the
+//! IGS would give these to some centimetres, and for each satellite. The results measured here are therefore no better
+//! than with such a file.
 //!
-//! The recordings stand beside the repository in `../shared/data/gnss`. Where they are absent these tests say
-//! SKIPPED and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
+//! The recordings are in `../shared/data/gnss`, beside the repository. Where they are absent these tests print SKIPPED
+//! and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;
 
 const KINEMATIC: Motion = Motion::Kinematic { process_noise: 100.0 };
-/// A session's length, and from when on its errors count, s.
+/// The length of a session, and the time from which its errors count, s.
 const HOUR: f64 = 3_600.0;
 const SETTLED: f64 = 1_200.0;
 
@@ -43,7 +43,7 @@ const ESBC: Station = Station {
     truth: [3_582_104.765_7, 532_590.178_5, 5_232_755.139_0],
 };
 
-/// Wettzell, an hour of the same day, with CODE's orbits and their clocks every five minutes.
+/// Wettzell, an hour of 25 June 2020, with CODE's orbits and their clocks every five minutes.
 const WTZR: Station = Station {
     observations: "wettzell2020177_multi/WTZR00DEU_R_20201770000_01D_30S_MO_120epoch.rnx.gz",
     orbits: &["wettzell2020177_multi/COD0MGXFIN_20201770000_01D_05M_ORB.SP3.gz"],
@@ -52,20 +52,21 @@ const WTZR: Station = Station {
         "esbc2020177_multi/galileo_igs20.atx.gz",
         "wettzell2020177_multi/igs20_wettzell_trim.atx.gz",
     ],
-    truth: [4_075_580.311_1, 931_854.054_3, 4_801_568.280_8],
+    truth: [4_075_580.294_8, 931_854.062_0, 4_801_568.281_6],
 };
 
-/// Satellites of a type: their letter, numbers and frequencies, and where their antenna is from the centre of mass, mm.
+/// Satellites of a type: their letter, numbers and frequencies, and the offset of their antenna from the centre of
+/// mass, mm.
 type Kind = (char, std::ops::RangeInclusive<u8>, &'static [&'static str], [f64; 3]);
 
-/// GLONASS-M but the numbers 9 and 26, which are of another type, and BeiDou-2 but its geostationary satellites.
+/// GLONASS-M except the numbers 9 and 26, which are of another type, and BeiDou-2 except its geostationary satellites.
 const KINDS: [Kind; 3] = [
     ('R', 1..=8, &["R01", "R02"], [-545.0, 0.0, 2_450.0]),
     ('R', 10..=24, &["R01", "R02"], [-545.0, 0.0, 2_450.0]),
     ('C', 6..=16, &["C02", "C06"], [600.0, 0.0, 1_100.0]),
 ];
 
-/// An antenna file of them.
+/// An antenna file with these satellites.
 fn antennas() -> String {
     let mut file = String::new();
     let mut line = |content: &str, label: &str| {
@@ -92,7 +93,7 @@ fn antennas() -> String {
 }
 
 impl Station {
-    /// `None` where the recordings are absent, which is said.
+    /// Reads the recording; `None`, with a notice, where it is absent.
     fn read(&self) -> Option<Recording> {
         let folder = folder_of("gnss")?;
         let paths = |names: &[&str]| -> Vec<PathBuf> {
@@ -115,8 +116,8 @@ impl Station {
         Some(recording.expect("all can be read"))
     }
 
-    /// The root mean square error of a session after 20 minutes, mm, the minutes after which it stays below a decimetre, and the
-    /// last error, mm.
+    /// The root mean square error of a session after 20 minutes, mm, the minutes after which it stays below a
+    /// decimetre, and the last error, mm.
     fn errors(
         &self,
         recording: &Recording,
@@ -139,7 +140,7 @@ impl Station {
         [1e3 * mean.sqrt(), last_beyond.map_or(0.0, |(t, _)| t / 60.0), last]
     }
 
-    /// Medians of both over the sessions of an hour.
+    /// The medians of the root mean square error and the minutes over sessions of an hour.
     fn medians(&self, recording: &Recording, motion: Motion, systems: Systems) -> [f64; 2] {
         let mut all = Vec::new();
         for session in recording.epochs(None).chunk_by(|a, b| {
@@ -155,7 +156,7 @@ impl Station {
     }
 }
 
-/// With and without the systems beside GPS and Galileo: neither is worse, and in sessions of an hour both are better.
+/// Adding GLONASS or BeiDou to GPS and Galileo makes neither measure worse, and improves both in sessions of an hour.
 #[test]
 fn glonass_and_beidou_beside_gps_and_galileo() {
     for (name, station, expected, at_most) in [
@@ -176,7 +177,7 @@ fn glonass_and_beidou_beside_gps_and_galileo() {
     }
 }
 
-/// Orbits of CODE beside clocks of CNES/CLS are told, and those of one service are not.
+/// Orbits of CODE combined with clocks of CNES/CLS are reported, and those of one service are not.
 #[test]
 fn products_of_two_services() {
     for (name, orbits, clocks, is_told) in [
@@ -192,7 +193,7 @@ fn products_of_two_services() {
     }
 }
 
-/// A whole day gains less, and its end loses no more than what antennas of types cost.
+/// A whole day gains less; its last error grows by no more than the error of antennas given by type.
 #[test]
 fn a_day_with_glonass() {
     let Some(recording) = ESBC.read() else { return };

@@ -1,5 +1,5 @@
-//! Tests across crates, one module a subject, in one binary: linking `host-sim` thirty times took longer than most
-//! of them. `cargo test -p kestirim-tests --test all robot_table::` runs the tests of one.
+//! Tests across crates, one module for each subject, in one binary: linking `host-sim` thirty times took longer than
+//! most of them. `cargo test -p kestirim-tests --test all robot_table::` runs the tests of one.
 
 mod any_input;
 mod apps_on_target;
@@ -13,6 +13,7 @@ mod drone_thesis;
 mod faults;
 mod firmware;
 mod functions_on_target;
+mod gnss_app;
 mod gnss_broadcast;
 mod gnss_figures;
 mod gnss_files;

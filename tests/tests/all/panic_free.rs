@@ -1,8 +1,8 @@
 //! No crate can panic: programs that call everything a crate offers (`tests/firmware/surface`) link nothing of the
-//! panic machinery on any target, at either optimisation; nor an allocator, nor double precision where there should
-//! be none. That they do call everything is shown by `surface_is_complete.rs`.
+//! panic machinery on any target, at either optimisation; nor an allocator, nor double precision where there should be
+//! none. That they call everything is shown by `surface_is_complete.rs`.
 //!
-//! On a machine without the tools these tests say SKIPPED and pass; with
+//! On a machine without the tools these tests print SKIPPED and pass; with
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead.
 
 use std::fs;
@@ -11,11 +11,12 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use target_bench::{CORTEX_M0, CORTEX_M4F, Images, Profile, RV32IMC, Target};
 
-/// A program that panics and computes with doubles, so that symbols are known to be seen.
+/// A program that panics and computes in double precision, to show that such symbols are detected.
 const CONTROL: &str = "control";
 
 /// Crates whose only scalar is `f64`, or that design in it.
-const IN_DOUBLES: [&str; 6] = [
+const IN_DOUBLES: [&str; 7] = [
+    "gnss-message",
     "gnss-ppp",
     "integer-ambiguity",
     "observer-design",
@@ -24,7 +25,7 @@ const IN_DOUBLES: [&str; 6] = [
     "uav-longitudinal",
 ];
 
-/// The programs, by the files they are made of.
+/// The names of the programs, from their source files.
 fn programs() -> Result<Vec<String>> {
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("firmware/surface/src/bin");
     let stem = |path: PathBuf| Some(path.file_stem()?.to_str()?.to_owned());

@@ -1,8 +1,8 @@
-//! Every crate stands on one floor, and depends on what stands below: read from `cargo metadata`. And every package
-//! that can be published has what a registry shows.
+//! Every crate belongs to one floor and depends on lower floors only, according to `cargo metadata`. Every package that
+//! can be published has the metadata that a registry shows.
 //!
-//! A crate says in its `Cargo.toml` where it stands: `[package.metadata.kestirim]`, `floor = "estimator"`. What is not
-//! in `crates/` is a program, which may depend on anything and on which no crate may.
+//! A crate declares its floor in its `Cargo.toml`: `[package.metadata.kestirim]`, `floor = "estimator"`. Packages
+//! outside `crates/` are programs, which may depend on anything and on which no crate may depend.
 
 mod licences;
 mod readmes;
@@ -17,22 +17,22 @@ use std::process::Command;
 use anyhow::{Context, Result, ensure};
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
 
-/// The floors of crates, and what stands on each may depend on.
+/// The floors of crates, and the floors on which each may depend.
 const FLOORS: [(&str, &[&str]); 9] = [
     ("numbers", &["numbers"]),
-    // Know no sensor: no model.
+    // Estimators know no sensor: no model.
     ("estimator", &["numbers", "estimator"]),
-    // Know no estimator.
+    // Models know no estimator.
     ("model", &["numbers", "model"]),
     ("frames", &["numbers", "frames"]),
-    // With the standard library, so nothing that runs on a target may depend on them.
-    ("files", &["numbers", "files"]),
+    // These need the standard library, so nothing that runs on a target may depend on them.
+    ("files", &["numbers", "frames", "files"]),
     ("system", &["numbers", "estimator", "model", "frames"]),
-    // On a PC: whole recordings, drawn or measured, that every program feeds systems with.
+    // For PCs: whole recordings, simulated or measured, with which every program feeds systems.
     ("recordings", &["numbers", "estimator", "model", "frames", "files", "system", "recordings"]),
-    // Of another language: feeds systems, as programs do, and no crate stands on it.
+    // Interfaces to another language: they feed systems, as programs do, and no crate depends on them.
     ("interface", &["numbers", "estimator", "model", "frames", "system"]),
-    // The same on a PC, with whole recordings; it goes to the other language's registry.
+    // Interfaces to another language on a PC, with whole recordings; they go to that language's registry.
     ("module", &["numbers", "estimator", "model", "frames", "files", "system", "recordings"]),
 ];
 
@@ -56,7 +56,7 @@ fn crates(metadata: &Metadata) -> Vec<&Package> {
     metadata.packages.iter().filter(|package| package.manifest_path.starts_with(&folder)).collect()
 }
 
-/// Those that go to Cargo's registry.
+/// The packages that are published in Cargo's registry.
 fn published(metadata: &Metadata) -> Result<Vec<&Package>> {
     let mut published = Vec::new();
     for package in crates(metadata) {
@@ -67,7 +67,7 @@ fn published(metadata: &Metadata) -> Result<Vec<&Package>> {
     Ok(published)
 }
 
-/// Where a crate says it stands.
+/// The floor that a crate declares.
 fn floor(package: &Package) -> Result<&str> {
     let floor = package.metadata["kestirim"]["floor"].as_str();
     let known: Vec<_> = FLOORS.iter().map(|(name, _)| *name).collect();
@@ -85,7 +85,7 @@ fn floors<'a>(crates: &[&'a Package]) -> Result<BTreeMap<&'a str, &'a str>> {
     crates.iter().map(|package| Ok((package.name.as_str(), floor(package)?))).collect()
 }
 
-/// How high a floor is.
+/// The height of a floor.
 fn height(floor: &str) -> u32 {
     match floor {
         "numbers" => 1,
@@ -127,7 +127,7 @@ fn no_arrow_points_up() -> Result<()> {
     Ok(())
 }
 
-/// Cargo allows circles through tests, but no registry takes the first of them.
+/// Cargo allows cycles through dev-dependencies, but no registry accepts the first package of a cycle.
 #[test]
 fn there_is_no_circle() -> Result<()> {
     let metadata = metadata()?;
@@ -193,7 +193,7 @@ fn packages_say_what_a_registry_shows() -> Result<()> {
         assert!(package.rust_version.is_some(), "{name} has no rust-version");
         assert!((1..=5).contains(&package.categories.len()), "{name}: {:?}", package.categories);
         assert!((1..=5).contains(&package.keywords.len()), "{name}: {:?}", package.keywords);
-        // What all have tells nobody anything.
+        // Keywords that several crates share do not tell them apart.
         let other = keywords.insert(package.keywords.clone(), name);
         assert_eq!(other, None, "{name} has keywords of its own");
     }
@@ -224,7 +224,7 @@ fn packages_hold_what_they_need() -> Result<()> {
     Ok(())
 }
 
-/// A library is compiled a second time for the tests in its sources only if there are some.
+/// A library is compiled a second time for unit tests only if its sources contain some.
 #[test]
 fn libraries_are_built_for_tests_of_their_own_where_they_have_some() -> Result<()> {
     for package in &metadata()?.packages {
@@ -242,14 +242,14 @@ fn libraries_are_built_for_tests_of_their_own_where_they_have_some() -> Result<(
     Ok(())
 }
 
-/// Folders of `host-sim/src/systems`: the names of the systems.
+/// The folders of `host-sim/src/systems`: the names of the systems.
 fn systems() -> Result<BTreeSet<String>> {
     let entries = fs::read_dir(root().join("host-sim/src/systems"))?;
     let folders = entries.filter_map(|entry| entry.ok().filter(|entry| entry.path().is_dir()));
     Ok(folders.filter_map(|folder| folder.file_name().into_string().ok()).collect())
 }
 
-/// Rust sources below a folder, those of `systems` apart.
+/// Collects the Rust sources below a folder, except those of `systems`.
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();

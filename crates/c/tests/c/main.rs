@@ -1,9 +1,10 @@
-//! The C interface, from C: the header is what cbindgen makes of the sources and compiles without a warning, and C
-//! programs tell on a computer and on three emulated targets the very bits that the crates compute here.
+//! Tests of the C interface from C: the header is what cbindgen generates from the sources and compiles without a
+//! warning, and C programs on a computer and on three emulated targets print bit for bit what the crates compute here.
 //!
-//! What a machine does not have is said: SKIPPED. With `KESTIRIM_REQUIRE_C=1` a missing compiler or emulator is
-//! a failure, with `KESTIRIM_REQUIRE_DATA=1` missing recordings are.
+//! Tests for which a machine lacks the tools print SKIPPED. With `KESTIRIM_REQUIRE_C=1` a missing compiler or emulator
+//! is a failure, with `KESTIRIM_REQUIRE_DATA=1` missing recordings are.
 
+mod broadcast;
 mod header;
 mod pointers;
 mod programs;

@@ -33,7 +33,7 @@ static kestirim_gnss_observation observations[KESTIRIM_MOST_SATELLITES];
 
 int main(void)
 {
-    const kestirim_gnss_config config = {0.0, 0.13962634015954636, -18.24, {0.0, 0.0, 0.0083}};
+    const kestirim_gnss_config config = {0.0, 0.13962634015954636, -18.24, {0.0, 0.0, 0.0083}, 0};
     kestirim_gnss *filter;
     struct head head;
     port_check(kestirim_gnss_init(memory, sizeof memory, &config, &filter));

@@ -5,11 +5,12 @@ use crate::error::Error;
 use crate::system::System;
 use crate::time::GpsTime;
 
-/// Seconds of a week.
+/// The length of a week, s.
 const WEEK: f64 = 604_800.0;
-/// As files write it that a satellite of GPS tells no accuracy: index 15 (IS-GPS-200, 20.3.3.3.1.3) is 6144 m and more.
+/// The accuracy that files write for a GPS satellite without one, m: index 15 (IS-GPS-200, 20.3.3.3.1.3) is 6144 m and
+/// more.
 const NO_ACCURACY: f64 = 6_144.0;
-/// The longest fit that a message can tell, h.
+/// The longest fit interval that a message can hold, h.
 const LONGEST_FIT: f64 = 194.0;
 
 /// The message in which an ephemeris is broadcast.
@@ -17,35 +18,35 @@ const LONGEST_FIT: f64 = 194.0;
 pub enum Message {
     /// The legacy message of GPS.
     Lnav,
-    /// That of Galileo on E1 and E5b, whose clock refers to both.
+    /// The I/NAV message of Galileo on E1 and E5b, whose clock refers to both.
     Inav,
-    /// That of Galileo on E5a, whose clock refers to E1 and E5a.
+    /// The F/NAV message of Galileo on E5a, whose clock refers to E1 and E5a.
     Fnav,
-    /// That of BeiDou on B1I, B2I and B3I, whose clock refers to B3I.
+    /// The D1 message of BeiDou on B1I, B2I and B3I, whose clock refers to B3I.
     D1,
 }
 
 impl Message {
-    /// All of them.
+    /// All messages.
     pub const ALL: [Self; 4] = [Self::Lnav, Self::Inav, Self::Fnav, Self::D1];
 }
 
-/// An ephemeris as a satellite broadcasts it: m, s and rad. What IS-GPS-200 (table 20-III), the Galileo OS SIS ICD (5.1.1) and
-/// BDS-SIS-ICD-B1I (5.2.4) call by symbols stands behind each name.
+/// An ephemeris as a satellite broadcasts it, in m, s and rad. The symbols of IS-GPS-200 (table 20-III), the Galileo OS
+/// SIS ICD (5.1.1) and BDS-SIS-ICD-B1I (5.2.4) are given with each field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ephemeris {
     /// The message.
     pub message: Message,
-    /// The time of which the orbit is told, by GPS: toe.
+    /// The reference time of the orbit, in GPS time: toe.
     pub time: GpsTime,
-    /// The time of which the clock is told: toc.
+    /// The reference time of the clock: toc.
     pub clock_time: GpsTime,
-    /// The satellite's clock minus the time of its system, s, s/s and s/s²: af0, af1, af2. Without the effect of the orbit's
-    /// eccentricity.
+    /// The satellite's clock minus the time of its system, s, s/s and s/s²: af0, af1, af2. The relativistic effect of
+    /// the orbit's eccentricity is not included.
     pub clock: [f64; 3],
-    /// Number of this issue: IODE or `IODnav`.
+    /// The issue number: IODE or `IODnav`.
     pub issue: u16,
-    /// Root of the semi-major axis, √m: √A.
+    /// The square root of the semi-major axis, √m: √A.
     pub root_of_axis: f64,
     /// Eccentricity: e.
     pub eccentricity: f64,
@@ -57,11 +58,11 @@ pub struct Ephemeris {
     pub perigee: f64,
     /// Longitude of the ascending node at the beginning of the week: Ω0.
     pub node: f64,
-    /// Its rate, rad/s: Ω̇.
+    /// The rate of the ascending node's longitude, rad/s: Ω̇.
     pub node_rate: f64,
     /// Inclination: i0.
     pub inclination: f64,
-    /// Its rate, rad/s: IDOT.
+    /// The rate of the inclination, rad/s: IDOT.
     pub inclination_rate: f64,
     /// Cosine and sine terms of the argument of latitude, rad: Cuc, Cus.
     pub latitude_terms: [f64; 2],
@@ -69,19 +70,21 @@ pub struct Ephemeris {
     pub radius_terms: [f64; 2],
     /// Cosine and sine terms of the inclination, rad: Cic, Cis.
     pub inclination_terms: [f64; 2],
-    /// Group delays, s: `TGD` of GPS; of Galileo BGD(E1, E5a) and BGD(E1, E5b); of BeiDou TGD1 of B1I and TGD2 of B2I.
+    /// Group delays, s: `TGD` for GPS; BGD(E1, E5a) and BGD(E1, E5b) for Galileo; TGD1 of B1I and TGD2 of B2I for
+    /// BeiDou.
     pub group_delays: [f64; 2],
-    /// Standard deviation of a range by it, m: URA of GPS and BeiDou, SISA of Galileo; none if the satellite gives none.
+    /// The standard deviation of a range from this ephemeris, m: URA for GPS and BeiDou, SISA for Galileo; `None` if
+    /// the satellite gives none.
     pub accuracy: Option<f64>,
-    /// Whether the satellite calls the signals of this message healthy and its data valid.
+    /// Whether the satellite declares the signals of this message healthy and its data valid.
     pub is_healthy: bool,
-    /// For how long the fit holds, half of it before and half behind its time, s; none if that is not told.
+    /// The fit interval, s, half of it before and half after the reference time; `None` if it is not given.
     pub fit: Option<f64>,
 }
 
 impl Ephemeris {
-    /// What is not told: zeros of no satellite.
-    #[cfg(any(feature = "rtcm", feature = "ubx"))]
+    /// An empty ephemeris, all zeros, for the fields that a message does not hold.
+    #[cfg(feature = "rtcm")]
     pub(crate) const NOTHING: Self = Self {
         message: Message::Lnav,
         time: GpsTime::EPOCH,
@@ -106,13 +109,13 @@ impl Ephemeris {
         fit: None,
     };
 
-    /// Whether the orbit is one: an ellipse with an axis.
+    /// Whether the orbit is an ellipse with a positive axis.
     pub(super) fn is_orbit(&self) -> bool {
         let axis = self.root_of_axis;
         (0.0..1.0).contains(&self.eccentricity) && axis > 0.0 && axis.is_finite()
     }
 
-    /// A satellite's ephemeris from the numbers of a record.
+    /// Reads a satellite's ephemeris from the numbers of a record.
     pub(super) fn read(
         satellite: u8,
         message: Option<Message>,
@@ -158,8 +161,8 @@ impl Ephemeris {
     }
 }
 
-/// Whether the satellite calls the signals of a message healthy: of Galileo the bits that RINEX puts together for the data's
-/// validity and the signal's health, of E1-B and E5b-I or of E5a-I.
+/// Whether the satellite declares the signals of a message healthy. For Galileo, RINEX combines the data validity and
+/// signal health bits: those of E1-B and E5b-I, or those of E5a-I, apply.
 pub(crate) fn is_healthy(message: Message, bits: f64) -> bool {
     let own = match message {
         Message::Lnav => 0xff,
@@ -170,16 +173,17 @@ pub(crate) fn is_healthy(message: Message, bits: f64) -> bool {
     bits as i64 & own == 0
 }
 
-/// The instant nearest to another one of which the second of the week is told: no week needs to be known.
+/// The instant nearest to `near` with a given second of the week, so that the week need not be known.
 pub(crate) fn time_of_week(near: GpsTime, second: f64) -> GpsTime {
-    // The week of GPS begins on Sunday; so did day 44244.
+    // The GPS week begins on Sunday, as day 44244 did.
     let day = (near.day() - 44_244).rem_euclid(7);
     let away = second - (f64::from(day) * 86_400.0 + near.second());
     let away = away - (away / WEEK).round() * WEEK;
     GpsTime::new(near.day(), near.second() + away)
 }
 
-/// A fit of so many hours in s. Some programs write the bit that says that it is longer than four.
+/// A fit interval in hours converted to s; `None` up to 1 h, as some programs write the bit that says that it is longer
+/// than four hours.
 fn fit(hours: f64) -> Option<f64> {
     (hours > 1.0 && hours <= LONGEST_FIT).then_some(3600.0 * hours)
 }

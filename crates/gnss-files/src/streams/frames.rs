@@ -1,17 +1,19 @@
-//! Frames of streams, told by their checksums.
+//! Detection of stream frames by their checksums.
 
-/// The first bytes of a frame of UBX, and how many are around what it holds.
+use kestirim_gnss_message::crc_24q;
+
+/// The first bytes of a UBX frame.
 const UBX: [u8; 2] = [0xb5, 0x62];
+/// The number of bytes around the payload of a UBX frame.
 const AROUND_UBX: usize = 8;
-/// The same of RTCM 3.
+/// The first byte of an RTCM 3 frame.
 const RTCM: u8 = 0xd3;
+/// The number of bytes around the payload of an RTCM 3 frame.
 const AROUND_RTCM: usize = 6;
-/// Generator of the CRC-24Q, without its highest bit.
-const CRC_24Q: u32 = 0x86_4cfb;
-/// So many bytes are looked through for a frame: a log may begin within one, or with lines of NMEA.
+/// How many bytes are searched for a frame: a log may begin within a frame, or with lines of NMEA.
 const BEGINNING: usize = 4096;
 
-/// Whether there is a whole frame of UBX near the beginning.
+/// Whether there is a complete UBX frame near the beginning.
 pub(crate) fn is_ubx(bytes: &[u8]) -> bool {
     frames(bytes, &UBX, |frame| {
         let length = usize::from(u16::from_le_bytes([*frame.get(4)?, *frame.get(5)?]));
@@ -25,7 +27,7 @@ pub(crate) fn is_ubx(bytes: &[u8]) -> bool {
     })
 }
 
-/// Whether there is a whole frame of RTCM 3 near the beginning.
+/// Whether there is a complete RTCM 3 frame near the beginning.
 pub(crate) fn is_rtcm(bytes: &[u8]) -> bool {
     frames(bytes, &[RTCM], |frame| {
         let length = u16::from_be_bytes([*frame.get(1)?, *frame.get(2)?]);
@@ -34,24 +36,14 @@ pub(crate) fn is_rtcm(bytes: &[u8]) -> bool {
             return Some(false);
         }
         let frame = frame.get(..usize::from(length) + AROUND_RTCM)?;
-        // With its own checksum behind, that of a whole frame is zero.
+        // The checksum over a whole frame, including its own checksum, is zero.
         Some(crc_24q(frame) == 0)
     })
 }
 
-/// Whether any that begins with `first` near the beginning is a frame.
+/// Whether anything near the beginning that starts with `first` is a frame.
 fn frames(bytes: &[u8], first: &[u8], is_frame: impl Fn(&[u8]) -> Option<bool>) -> bool {
     let beginning = &bytes[..bytes.len().min(BEGINNING)];
     memchr::memmem::find_iter(beginning, first)
         .any(|place| is_frame(&bytes[place..]).unwrap_or_default())
-}
-
-/// The checksum of a frame of RTCM 3.
-pub(super) fn crc_24q(bytes: &[u8]) -> u32 {
-    bytes.iter().fold(0, |crc, byte| {
-        (0..8).fold(crc ^ u32::from(*byte) << 16, |crc, _| {
-            let shifted = crc << 1 & 0xff_ffff;
-            if crc & 0x80_0000 == 0 { shifted } else { shifted ^ CRC_24Q }
-        })
-    })
 }

@@ -1,18 +1,21 @@
-//! UBX: observations (RXM-RAWX), and the messages of GPS on L1 and of Galileo on E1 and E5b (RXM-SFRBX).
+//! UBX: observations (RXM-RAWX), and the navigation messages of GPS on L1, of Galileo on E1 and E5b, and of BeiDou's satellites that
+//! are not geostationary (RXM-SFRBX).
 //!
-//! (u-blox, ZED-F9P Interface Description, 3.17.5 and 3.17.9; numbers of signals and satellites: 1.5.)
+//! Source: u-blox, ZED-F9P Interface Description, 3.17.5 and 3.17.9; numbers of signals and satellites: 1.5.
 
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
+use kestirim_gnss_message::galileo::Word;
+use kestirim_gnss_message::{Collector, beidou, gps};
 use ublox::proto27::{PacketRef, Proto27};
 use ublox::rxm_rawx::{RxmRawxRef, TrkStatFlags};
 use ublox::rxm_sfrbx::RxmSfrbxRef;
 use ublox::{ParserBuilder, UbxPacket};
 
-use super::collection::Collection;
-use super::inav::{self, Word};
-use super::lnav::{self, Subframe};
+use super::dated::dated;
 use super::{Locks, Signals, Stream};
+use crate::navigation::Message;
 use crate::observations::{CHANNELS, Raw, Signal};
 use crate::system::System;
 use crate::text::Text;
@@ -21,33 +24,40 @@ use crate::unserved::Unserved;
 
 /// The longest message that is read, bytes: 255 signals.
 const LONGEST: usize = 8_192;
-/// What is told at most of how long a phase has been tracked, ms.
+/// The maximum of the reported phase tracking time, ms.
 const LONGEST_LOCK: u16 = 64_500;
-/// `gnssId` of the systems that are served.
+/// `gnssId` of the systems that are read.
 const OF_GPS: u8 = 0;
 const OF_GALILEO: u8 = 2;
 const OF_BEIDOU: u8 = 3;
 const OF_GLONASS: u8 = 6;
-/// `freqId` of GLONASS is the channel and this.
+/// `freqId` of GLONASS is the channel plus this.
 const FREQUENCY_OF_CHANNEL_0: i8 = 7;
-/// `sigId` of L1 C/A, the signal that carries the message which is read.
+/// `sigId` of L1 C/A, the signal of GPS whose navigation message is read.
 const L1: u8 = 0;
-/// The letters of systems of which the message is not read by their `gnssId`, and what is taken off a satellite's number for the one that
-/// RINEX has.
+/// `sigId` of B1I, B2I and B3I with the message D1.
+const D1: [u8; 3] = [0, 2, 4];
+/// The systems with navigation messages that are not read: `gnssId`, letter, and what is subtracted from a satellite's
+/// number for that of RINEX.
 const OTHERS: [(u8, u8, u8); 5] =
     [(1, b'S', 100), (3, b'C', 0), (5, b'J', 0), (6, b'R', 0), (7, b'I', 0)];
-/// Days of a week.
+/// The time after which parts of a message are not joined with those before, s: numbers of issues repeat.
+const SILENCE: f64 = 300.0;
+/// The length of a week, days.
 const WEEK: i32 = 7;
-/// Numbers of satellites of both.
+/// The satellite numbers of GPS whose navigation messages are read.
 const GPS: RangeInclusive<u8> = 1..=32;
+/// The satellite numbers of Galileo whose navigation messages are read.
 const GALILEO_NUMBERS: RangeInclusive<u8> = 1..=36;
+/// The satellite numbers of BeiDou; those of geostationary satellites among them send another message on other signals.
+const BEIDOU_NUMBERS: RangeInclusive<u8> = 1..=63;
 
 /// Reads a file.
 pub(super) fn read(text: &Text) -> Stream {
     let mut reader = Reader::default();
     let mut parser = ParserBuilder::new().with_protocol::<Proto27>().with_fixed_buffer::<LONGEST>();
     let mut damaged = 0;
-    // The parser takes no more at once than it has room for.
+    // The parser accepts no more at once than its buffer holds.
     for piece in text.bytes().chunks(LONGEST / 2) {
         let mut packets = parser.consume_ubx(piece);
         while let Some(packet) = packets.next() {
@@ -69,19 +79,20 @@ pub(super) fn read(text: &Text) -> Stream {
     stream
 }
 
-/// A part of the message of a satellite.
+/// A part of a satellite's navigation message.
 #[derive(Debug, Clone, Copy)]
 enum Part {
-    Gps(Subframe),
+    Gps(gps::Subframe),
     Galileo(Word),
+    BeiDou(beidou::Subframe),
 }
 
 #[derive(Debug, Default)]
 struct Reader {
     stream: Stream,
     locks: Locks,
-    /// Parts of messages in the order of the stream, of which the week is not known by themselves, each with the place of the
-    /// epoch before it and its satellite's number.
+    /// Parts of navigation messages in the order of the stream, each with the index of the epoch before it and the
+    /// satellite's number; they do not tell the week by themselves.
     parts: Vec<(usize, u8, Part)>,
 }
 
@@ -92,7 +103,8 @@ impl Reader {
         let milliseconds = (1e3 * message.rcv_tow()).round() as i64;
         let mut satellites: Vec<Signals> = Vec::new();
         for it in message.measurements() {
-            // The driver's name of the signal: it was reserved before there were receivers of two carriers.
+            // `reserved2` is the signal under the driver's name: the field was reserved before there were
+            // dual-frequency receivers.
             let (system, number) = (it.gnss_id(), it.sv_id());
             let Some((satellite, [code, phase])) = told(system, number, it.reserved2()) else {
                 if !matches!(system, OF_BEIDOU | OF_GLONASS) {
@@ -116,7 +128,7 @@ impl Reader {
             if status.contains(TrkStatFlags::PR_VALID) {
                 raw.push(Raw { signal: code, value: it.pr_mes(), lock_lost: false });
             }
-            // Half a cycle may be missing until it is told that none is.
+            // The phase may be off by half a cycle until the receiver reports that it is resolved.
             if status.contains(TrkStatFlags::CP_VALID | TrkStatFlags::HALF_CYCLE) {
                 let tracked = match it.lock_time() {
                     LONGEST_LOCK.. => Locks::LONGEST,
@@ -131,16 +143,19 @@ impl Reader {
 
     fn part(&mut self, message: &RxmSfrbxRef<'_>) {
         let (system, number) = (message.gnss_id(), message.sv_id());
-        // The driver's name of the signal, too.
+        // `reserved1` is likewise the signal under the driver's name.
         let signal = message.reserved1();
         let part = match system {
             OF_GPS if signal == L1 && GPS.contains(&number) => {
-                Subframe::of(message.dwrd().take(lnav::WORDS)).map(Part::Gps)
+                words(message).and_then(|words| gps::Subframe::from_words(&words)).map(Part::Gps)
             }
-            // Both signals carry the same message; of another it would not have the checksum.
+            // Both signals carry the same message; another message would not pass the checksum.
             OF_GALILEO if GALILEO_NUMBERS.contains(&number) => {
-                Word::of(message.dwrd().take(inav::WORDS)).map(Part::Galileo)
+                words(message).and_then(|page| Word::from_page(&page)).map(Part::Galileo)
             }
+            OF_BEIDOU if D1.contains(&signal) && BEIDOU_NUMBERS.contains(&number) => words(message)
+                .and_then(|words| beidou::Subframe::from_words(&words))
+                .map(Part::BeiDou),
             _ => None,
         };
         let Some(part) = part else {
@@ -151,34 +166,59 @@ impl Reader {
         self.parts.push((self.stream.epochs.len().saturating_sub(1), number, part));
     }
 
-    /// Makes ephemerides of the parts.
+    /// Assembles ephemerides from the parts.
     fn finish(self) -> Stream {
         let Self { mut stream, parts, .. } = self;
-        let mut of_gps = Collection::new();
-        let mut of_galileo = Collection::new();
+        let mut of_gps = BTreeMap::new();
+        let mut of_galileo = BTreeMap::new();
+        let mut of_beidou = BTreeMap::new();
         for (place, number, part) in parts {
-            // Without any epoch there is no week.
-            let Some(near) = stream.epochs.get(place).map(|(time, _)| *time) else { break };
-            let (satellite, ephemeris) = match part {
-                Part::Gps(subframe) => {
-                    stream.ionosphere = lnav::ionosphere(&subframe).or(stream.ionosphere);
-                    let ephemeris = |parts| lnav::ephemeris(parts, near);
-                    (number, of_gps.take(number, (subframe.number(), subframe), ephemeris))
+            // Without any epoch the week is not known.
+            let Some((near, _)) = stream.epochs.get(place) else { break };
+            let (system, message, ephemeris) = match part {
+                Part::Gps(part) => {
+                    stream.ionosphere = part.ionosphere().or(stream.ionosphere);
+                    (System::Gps, Message::Lnav, collect(&mut of_gps, number, part, *near))
                 }
-                Part::Galileo(word) => {
-                    let ephemeris = |parts| inav::ephemeris(parts, near);
-                    let ephemeris = of_galileo.take(number, (word.number(), word), ephemeris);
-                    let Some(satellite) = System::Galileo.number(number) else { continue };
-                    (satellite, ephemeris)
+                Part::Galileo(part) => {
+                    (System::Galileo, Message::Inav, collect(&mut of_galileo, number, part, *near))
+                }
+                Part::BeiDou(part) => {
+                    (System::BeiDou, Message::D1, collect(&mut of_beidou, number, part, *near))
                 }
             };
-            stream.ephemerides.extend(ephemeris.map(|ephemeris| (satellite, ephemeris)));
+            if let (Some(satellite), Some(ephemeris)) = (system.number(number), ephemeris) {
+                stream.ephemerides.push((satellite, dated(message, &ephemeris, *near)));
+            }
         }
         stream
     }
 }
 
-/// Takes note of a satellite by the receiver's numbers, if its system is one of the others.
+/// The parts of one satellite, and the time of the last one.
+type Parts<P, const N: usize> = (Collector<P, N>, GpsTime);
+
+/// Adds a part, which came at an instant, to those of its satellite.
+fn collect<P: kestirim_gnss_message::Part<N>, const N: usize>(
+    satellites: &mut BTreeMap<u8, Parts<P, N>>,
+    number: u8,
+    part: P,
+    now: GpsTime,
+) -> Option<kestirim_gnss_message::Ephemeris> {
+    let (parts, heard) = satellites.entry(number).or_insert((Collector::new(), now));
+    if now.since(*heard).abs() > SILENCE {
+        *parts = Collector::new();
+    }
+    *heard = now;
+    parts.take(part)
+}
+
+/// The first words of a message; `None` if there are fewer.
+fn words<const N: usize>(message: &RxmSfrbxRef<'_>) -> Option<[u32; N]> {
+    message.dwrd().take(N).collect::<Vec<_>>().try_into().ok()
+}
+
+/// Notes a satellite by the receiver's numbers, if its system is one of [`OTHERS`].
 fn note(unserved: &mut Unserved, system: u8, number: u8) {
     let Some((_, letter, off)) = OTHERS.iter().find(|(of, ..)| *of == system) else { return };
     if let Some(number) = number.checked_sub(*off) {
@@ -186,7 +226,7 @@ fn note(unserved: &mut Unserved, system: u8, number: u8) {
     }
 }
 
-/// The satellite and its code and phase of a signal, by the numbers that the receiver has for it; none of a signal that is not
+/// The satellite, and the code and phase of a signal, from the receiver's numbers; `None` for a signal that is not
 /// used.
 fn told(system: u8, number: u8, signal: u8) -> Option<(u8, [Signal; 2])> {
     let of = match system {
@@ -197,7 +237,7 @@ fn told(system: u8, number: u8, signal: u8) -> Option<(u8, [Signal; 2])> {
         _ => return None,
     };
     let [band, tracking] = match (system, signal) {
-        // B1I with the message of most satellites, and with that of geostationary ones.
+        // B1I with the D1 message of most satellites, and with the D2 message of geostationary ones.
         (OF_BEIDOU, 0 | 1) => *b"2I",
         (OF_BEIDOU, 2 | 3) | (OF_GALILEO, 5) => *b"7I",
         (OF_BEIDOU, 4 | 10) => *b"6I",

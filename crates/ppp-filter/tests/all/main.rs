@@ -1,5 +1,6 @@
-//! Tests of the crate from outside, in one program: less is compiled and linked.
+//! Integration tests in one program, so that less is compiled and linked.
 
+mod broadcast;
 mod filter;
 mod lean;
 mod moved;

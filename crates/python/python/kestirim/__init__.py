@@ -1,10 +1,10 @@
 """Estimators for localisation, written in Rust, over NumPy arrays.
 
-Five systems, each one call a recording: `pedestrian`, `robot`, `drone`, `uav`, `gnss`. Units are SI and radians, frames
-are named, and an estimate comes with its standard deviation and its `Health`. A stranger's log of an inertial sensor:
-`read_imu`. Building blocks: Kalman filters (`KalmanFilter`,
-`AdaptiveKalmanFilter`, `RobustKalmanFilter`), `ParticleFilter`, `attitude`, `LuenbergerObserver`, and the design of observers:
-`place`, `dare`, `c2d`.
+Five systems, each with one call per recording: `pedestrian`, `robot`, `drone`, `uav`, `gnss`. Units are SI and radians,
+frames are named, and every estimate comes with its standard deviation and its `Health`. `read_imu` reads logs of
+inertial sensors in many formats. Building blocks: Kalman filters (`KalmanFilter`, `AdaptiveKalmanFilter`,
+`RobustKalmanFilter`), `ParticleFilter`, `attitude`, `LuenbergerObserver`, and the design of observers: `place`, `dare`,
+`c2d`.
 
 >>> import numpy as np
 >>> filter = KalmanFilter(x=[0, 0], P=np.eye(2), F=[[1, 1], [0, 1]], H=[[1, 0]], Q=0.01 * np.eye(2), R=[1])

@@ -1,4 +1,4 @@
-"""Building blocks: estimators of any sensor, and the design of observers. All compute in double precision."""
+"""Building blocks: estimators for any sensor, and the design of observers. All compute in double precision."""
 
 from __future__ import annotations
 
@@ -14,62 +14,64 @@ from ._check import Complexes, Floats, floats, maybe_floats
 
 
 def _noise(r: npt.ArrayLike, count: int) -> Floats:
-    """R as a matrix; a line holds its diagonal."""
+    """R as a matrix, from a matrix or from its diagonal."""
     array = np.asarray(r, dtype=np.float64)
     return floats("R", np.diag(array) if array.ndim == 1 else array, count, count)
 
 
 @dataclass(frozen=True)
 class Filtered:
-    """What a Kalman filter made of n rows of m measurements, with k states."""
+    """Results of a Kalman filter with k states for n rows of m measurements."""
 
     x: Floats
-    """(n, k) the state after each row."""
+    """(n, k) estimated state after each row."""
     P: Floats
-    """(n, k, k) its covariance."""
+    """(n, k, k) covariance of the state after each row."""
     innovation: Floats
-    """(n, m) z - H x before each row; not a number where nothing was measured."""
+    """(n, m) innovation z - H x before the update with each row; NaN where nothing was measured."""
     nis: Floats
-    """(n,) normalised innovations squared: as many as there are measurements, on average."""
+    """(n,) normalised innovation squared of each row: on average the number of its measurements."""
 
 
 @dataclass(frozen=True)
 class AdaptivelyFiltered(Filtered):
-    """The same with what was learnt."""
+    """Results of an adaptive Kalman filter, including the variances that it has learnt."""
 
     R: Floats
-    """(n, m) the variances of the measurements after each row."""
+    """(n, m) learnt variances of the measurements after each row."""
     Q: Floats
-    """(n, k) the diagonal of the process noise."""
+    """(n, k) learnt diagonal of the process noise after each row."""
 
 
 @dataclass(frozen=True)
 class RobustlyFiltered(Filtered):
-    """The same with what became of each measurement."""
+    """Results of a robust Kalman filter, including the weight of each measurement."""
 
     weight: Floats
-    """(n, m) from 0, left out, to 1, fully taken in; not a number where nothing was measured."""
+    """(n, m) weight of each measurement, from 0 (rejected) to 1 (fully used); NaN where nothing was measured."""
 
 
 class _Sleeper:
-    """What all blocks with a state have."""
+    """Base class of all blocks with a state."""
 
     _sleeper: _kestirim.Filter | _kestirim.Cloud | _kestirim.Observer
 
     def snapshot(self) -> bytes:
-        """The whole state, to be written to a file: with its name, version, size and checksum."""
+        """The complete state as bytes, with a name, version, size and checksum, for example to write it to a file."""
         return self._sleeper.snapshot()
 
     def restore(self, snapshot: bytes) -> None:
-        """Goes on from a snapshot to the bit. A torn one, and one of another kind or size, is refused: all stays as it was.
+        """Continues from a snapshot, bit for bit.
 
-        What was said when the object was made (F, H, Q and R of a plain or robust filter) is not in it: make it alike.
+        A snapshot that is damaged, or of another kind or size, is refused, and the object is unchanged. Constructor
+        arguments that are not part of the state (F, H, Q and R of a plain or robust filter) are not in the snapshot:
+        construct the object with the same ones.
         """
         self._sleeper.restore(snapshot)
 
 
 class _Filter(_Sleeper):
-    """What all Kalman filters have."""
+    """Base class of all Kalman filters."""
 
     def __init__(
         self,
@@ -104,26 +106,29 @@ class _Filter(_Sleeper):
 
     @property
     def x(self) -> Floats:
-        """(k,) the state."""
+        """(k,) estimated state."""
         return np.array(self._filter.x())
 
     @property
     def P(self) -> Floats:
-        """(k, k) its covariance."""
+        """(k, k) covariance of the state."""
         flat = np.array(self._filter.p())
         count = int(np.sqrt(len(flat)))
         return flat.reshape(count, count)
 
     def predict(self) -> None:
-        """Moves on by a step: x = F x, P = F P F' + Q."""
+        """Predicts by one step: x = F x, P = F P F' + Q."""
         self._filter.predict()
 
     def update(self, z: npt.ArrayLike) -> float:
-        """Takes in measurements (m,), not a number where nothing was measured; answers with their NIS."""
+        """Updates with measurements (m,), NaN where not measured; returns their normalised innovation squared."""
         return self._filter.update(floats("z", z, self._measurements))
 
     def correct(self, innovation: npt.ArrayLike, H: npt.ArrayLike) -> float:
-        """Takes in innovations z - h(x) (m,) and rows dh/dx (m, k) of a model that you linearised: the extended filter."""
+        """Updates with innovations z - h(x) (m,) and the Jacobian dh/dx (m, k): the extended Kalman filter.
+
+        The caller linearises the model h. Returns the normalised innovation squared.
+        """
         count = len(self._filter.x())
         found = floats("innovation", innovation, self._measurements)
         return self._filter.correct(found, floats("H", H, self._measurements, count))
@@ -136,9 +141,10 @@ class _Filter(_Sleeper):
 
 
 class KalmanFilter(_Filter):
-    """The Kalman filter of a linear model, 1 to 12 states and measurements.
+    """The Kalman filter of a linear model, with 1 to 12 states and 1 to 12 measurements.
 
-    x: (k,). P: (k, k). F: (k, k) of a step. H: (m, k). Q: (k, k) noise of a step. R: (m, m), or (m,) its diagonal.
+    x: (k,) initial state. P: (k, k) its covariance. F: (k, k) transition of a step. H: (m, k) measurement matrix.
+    Q: (k, k) process noise of a step. R: (m, m) measurement noise, or (m,) its diagonal.
     """
 
     def __init__(
@@ -153,16 +159,17 @@ class KalmanFilter(_Filter):
         super().__init__(x, P, F, H, Q, R, "plain")
 
     def filter(self, zs: npt.ArrayLike) -> Filtered:
-        """Predicts and updates with each row of (n, m); all of them or, if one is refused, none."""
+        """Predicts and updates with each row of zs (n, m): with all rows or, if one is refused, with none."""
         found = self._run(zs)
         return Filtered(found["x"], found["P"], found["innovation"], found["nis"])
 
 
 class AdaptiveKalmanFilter(_Filter):
-    """The adaptive extended Kalman filter: variances of measurements and states are learnt from residuals, within limits.
+    """An adaptive extended Kalman filter: learns variances of measurements and states from residuals, within limits.
 
-    As `KalmanFilter`; the diagonals of Q and R are where learning begins. forgetting: 0.95 remembers about 20 rows.
-    r_limits, q_limits: least and greatest variance of a measurement and of a state, a step.
+    Arguments as for `KalmanFilter`; learning starts from the diagonals of Q and R. forgetting: forgetting factor; 0.95
+    remembers about 20 rows. r_limits: smallest and largest variance of a measurement. q_limits: smallest and largest
+    variance of a state per step.
     """
 
     def __init__(
@@ -181,17 +188,17 @@ class AdaptiveKalmanFilter(_Filter):
         super().__init__(x, P, F, H, Q, R, "adaptive", forgetting, (*r_limits, *q_limits))
 
     def filter(self, zs: npt.ArrayLike) -> AdaptivelyFiltered:
-        """Predicts, updates and learns with each row of (n, m); all of them or, if one is refused, none."""
+        """Predicts, updates and learns with each row of zs (n, m): with all rows or, if one is refused, with none."""
         found = self._run(zs)
         answer = (found["x"], found["P"], found["innovation"], found["nis"])
         return AdaptivelyFiltered(*answer, R=found["first"], Q=found["second"])
 
 
 class RobustKalmanFilter(_Filter):
-    """A Kalman filter that weighs measurements by their residuals: outliers are weakened or left out.
+    """A Kalman filter that weights measurements by their residuals: outliers are down-weighted or rejected.
 
-    As `KalmanFilter`, with a diagonal R. method: "iterative-igg3" treats the worst measurement first; "igg3" all at once;
-    "t-test" classifies; "plain" does nothing.
+    Arguments as for `KalmanFilter`, with a diagonal R. method: IGG III weights, "iterative-igg3" the worst measurement
+    first, "igg3" all at once; "t-test" classifies each measurement; "plain" leaves all weights at 1.
     """
 
     def __init__(
@@ -208,16 +215,16 @@ class RobustKalmanFilter(_Filter):
         super().__init__(x, P, F, H, Q, R, "robust", method=method)
 
     def filter(self, zs: npt.ArrayLike) -> RobustlyFiltered:
-        """Predicts and updates with each row of (n, m); all of them or, if one is refused, none."""
+        """Predicts and updates with each row of zs (n, m): with all rows or, if one is refused, with none."""
         found = self._run(zs)
         answer = (found["x"], found["P"], found["innovation"], found["nis"])
         return RobustlyFiltered(*answer, weight=found["first"])
 
 
 class ParticleFilter(_Sleeper):
-    """A cloud of up to 8192 particles in 1 to 6 coordinates, evenly spread over a box to begin with.
+    """A cloud of up to 8192 particles in 1 to 6 coordinates, initially drawn uniformly from a box.
 
-    low, high: (d,) corners of the box. The same seed draws the same numbers.
+    count: number of particles. low, high: (d,) corners of the box. The same seed draws the same numbers.
     """
 
     def __init__(self, count: int, low: npt.ArrayLike, high: npt.ArrayLike, *, seed: int = 0) -> None:
@@ -228,63 +235,63 @@ class ParticleFilter(_Sleeper):
 
     @property
     def states(self) -> Floats:
-        """(n, d) where the particles are."""
+        """(n, d) states of the particles."""
         return np.array(self._cloud.states()).reshape(self._size)
 
     @property
     def weights(self) -> Floats:
-        """(n,) their weights, of which the sum is 1."""
+        """(n,) weights of the particles; their sum is 1."""
         return np.array(self._cloud.weights())
 
     @property
     def effective(self) -> float:
-        """How many particles of equal weight are worth as much."""
+        """Effective number of particles: as many of equal weight would represent the distribution as well."""
         return self._cloud.effective()
 
     @property
     def mean(self) -> Floats:
-        """(d,) the weighted mean."""
+        """(d,) weighted mean of the particles."""
         return np.array(self._cloud.moments()[0])
 
     @property
     def covariance(self) -> Floats:
-        """(d, d) how the particles spread about it."""
+        """(d, d) weighted covariance of the particles."""
         return np.array(self._cloud.moments()[1]).reshape(self._size[1], self._size[1])
 
     def move(self, states: npt.ArrayLike) -> None:
-        """Puts the particles elsewhere, (n, d): the prediction, as you compute it from `states`."""
+        """Replaces the states of the particles (n, d): the prediction, which the caller computes from `states`."""
         self._cloud.move_to(floats("states", states, *self._size))
 
     def update(self, log_likelihood: npt.ArrayLike) -> float:
-        """Takes in log-likelihoods (n,) of the particles; answers with the logarithm of the evidence.
+        """Updates the weights with log-likelihoods (n,) of the particles; returns the logarithm of the evidence.
 
-        One that is no finite number leaves its particle no weight.
+        A particle whose log-likelihood is not finite gets no weight.
         """
         return self._cloud.update(floats("log_likelihood", log_likelihood, self._size[0]))[1]
 
     def resample(
         self, resampler: Literal["systematic", "stratified", "residual", "multinomial"] = "systematic"
     ) -> None:
-        """Multiplies heavy particles and drops light ones; then all weigh the same."""
+        """Duplicates heavy particles and drops light ones; afterwards all have the same weight."""
         self._cloud.resample(resampler)
 
     def jitter(self, deviation: npt.ArrayLike) -> None:
-        """Adds nearly normal noise of these standard deviations (d,)."""
+        """Adds nearly normal noise with these standard deviations (d,) to the particles."""
         self._cloud.jitter(floats("deviation", deviation, self._size[1]))
 
     def regularise(self, scale: float = 1.0) -> None:
-        """Jitter of the cloud's own shape, which keeps its mean and covariance (Liu and West)."""
+        """Adds noise in the shape of the cloud, preserving its mean and covariance (Liu and West)."""
         self._cloud.regularise(scale)
 
 
 @dataclass(frozen=True)
 class Attitude:
-    """Attitudes after each of n samples."""
+    """Attitude and gyroscope bias after each of n samples."""
 
     quaternion: Floats
-    """(n, 4) w, x, y, z: body to earth, z up; the heading is the gyroscope's alone."""
+    """(n, 4) w, x, y, z: body to earth frame, z up; the heading is from the gyroscope alone."""
     gyro_bias: Floats
-    """(n, 3) rad/s, body."""
+    """(n, 3) rad/s: estimated bias of the gyroscope, body frame."""
 
 
 def attitude(
@@ -298,11 +305,12 @@ def attitude(
     bias_gain: float = 0.03,
     gate: float = 0.1,
 ) -> Attitude:
-    """The attitude and heading reference: gyroscope and accelerometer fused in a quaternion (Mahony 2008).
+    """Attitude and heading reference: fuses gyroscope and accelerometer in a quaternion (Mahony 2008).
 
-    t: (n,) s. gyro: (n, 3) rad/s. accel: (n, 3) m/s², specific force; both in body axes.
-    start: quaternion w, x, y, z; else level by the first force. tilt_gain: 1/s. bias_gain: 1/s².
-    gate: the largest deviation of |accel|/g from 1 at which it is taken for gravity.
+    t: (n,) s. gyro: (n, 3) rad/s, body axes. accel: (n, 3) m/s², specific force, body axes.
+    start: initial quaternion w, x, y, z; by default levelled with the first specific force. gyro_bias: initial bias,
+    rad/s. tilt_gain: 1/s. bias_gain: 1/s². gate: largest deviation of |accel|/g from 1 at which accel is treated as
+    gravity.
     """
     times = floats("t", t, "n")
     count = len(times)
@@ -322,18 +330,19 @@ def attitude(
 
 @dataclass(frozen=True)
 class Observed:
-    """What an observer made of n rows."""
+    """Results of an observer for n rows."""
 
     x: Floats
-    """(n, k) the state at the time of each measurement, before it is taken in."""
+    """(n, k) estimated state at the time of each measurement, before it is used."""
     innovation: Floats
-    """(n, p) y - C x."""
+    """(n, p) innovation y - C x."""
 
 
 class LuenbergerObserver(_Sleeper):
-    """x = A x + B u + L (y - C x) a step, 1 to 8 states, up to 4 inputs and outputs.
+    """A Luenberger observer, x = A x + B u + L (y - C x) per step, of 1 to 8 states, up to 4 inputs and 1 to 4 outputs.
 
-    a: (k, k). b: (k, m). c: (p, k). gain: (k, p), as `place` or `dare` answers. x: (k,) the start.
+    a: (k, k) A. b: (k, m) B. c: (p, k) C. gain: (k, p) L, from `place` or `dare` (`predictor_gain`).
+    x: (k,) initial state.
     """
 
     def __init__(
@@ -349,11 +358,11 @@ class LuenbergerObserver(_Sleeper):
 
     @property
     def x(self) -> Floats:
-        """(k,) the state at the time of the next measurement."""
+        """(k,) estimated state at the time of the next measurement."""
         return np.array(self._observer.x())
 
     def run(self, inputs: npt.ArrayLike, measured: npt.ArrayLike) -> Observed:
-        """Takes in inputs (n, m) and measurements (n, p), rows of no numbers where nothing was measured; all or none."""
+        """Processes inputs (n, m) and measurements (n, p), rows of NaN where nothing was measured: all rows or none."""
         rows = floats("inputs", inputs, "n", self._sizes[0])
         outputs = floats("measured", measured, len(rows), self._sizes[1])
         found = self._observer.run(rows, outputs)
@@ -362,12 +371,12 @@ class LuenbergerObserver(_Sleeper):
 
 @dataclass(frozen=True)
 class Placement:
-    """A gain of an observer."""
+    """Gain of an observer, and the poles that it places."""
 
     gain: Floats
-    """(k, p) L of x = A x + B u + L (y - C x)."""
+    """(k, p) gain L of x = A x + B u + L (y - C x)."""
     poles: Complexes
-    """(k,) the eigenvalues that A - L C really has, in the order in which they were wanted."""
+    """(k,) actual eigenvalues of A - L C, in the order of the requested ones."""
 
 
 def place(a: npt.ArrayLike, c: npt.ArrayLike, poles: Sequence[complex]) -> Placement:
@@ -384,20 +393,23 @@ def place(a: npt.ArrayLike, c: npt.ArrayLike, poles: Sequence[complex]) -> Place
 
 @dataclass(frozen=True)
 class Riccati:
-    """The Kalman filter that has settled."""
+    """The steady-state Kalman filter."""
 
     prior: Floats
-    """(k, k) covariance before an update."""
+    """(k, k) covariance of the state before an update."""
     posterior: Floats
-    """(k, k) and after it."""
+    """(k, k) covariance of the state after an update."""
     filter_gain: Floats
-    """(k, p) K of x = x + K (y - C x)."""
+    """(k, p) gain K of the update x = x + K (y - C x)."""
     predictor_gain: Floats
-    """(k, p) A K, for `LuenbergerObserver`."""
+    """(k, p) gain A K of the predictor form, for `LuenbergerObserver`."""
 
 
 def dare(a: npt.ArrayLike, c: npt.ArrayLike, q: npt.ArrayLike, r: npt.ArrayLike) -> Riccati:
-    """Solves the discrete algebraic Riccati equation of x = A x + w, y = C x + v with covariances q (k, k) and r (p, p)."""
+    """Solves the discrete algebraic Riccati equation of x = A x + w, y = C x + v.
+
+    a: (k, k) A. c: (p, k) C. q: (k, k) covariance of w. r: (p, p) covariance of v.
+    """
     rows = floats("c", c, "p", "k")
     count = rows.shape[1]
     square, noise = floats("a", a, count, count), floats("q", q, count, count)
@@ -407,18 +419,21 @@ def dare(a: npt.ArrayLike, c: npt.ArrayLike, q: npt.ArrayLike, r: npt.ArrayLike)
 
 @dataclass(frozen=True)
 class Discrete:
-    """x = A x + B u a step."""
+    """Model in discrete time, x = A x + B u per step."""
 
     a: Floats
-    """(k, k)."""
+    """(k, k) A."""
     b: Floats
-    """(k, m)."""
+    """(k, m) B."""
 
 
 def c2d(
     a: npt.ArrayLike, b: npt.ArrayLike, interval: float, method: Literal["zoh", "tustin"] = "zoh"
 ) -> Discrete:
-    """Discretises dx/dt = A x + B u, a (k, k), b (k, m), over `interval` s: inputs held, or the trapezoidal rule."""
+    """Discretises dx/dt = A x + B u, a (k, k), b (k, m), over `interval` s.
+
+    method: "zoh" holds the inputs over the interval; "tustin" is the trapezoidal rule.
+    """
     entries = floats("b", b, "k", "m")
     found = _kestirim.c2d(floats("a", a, len(entries), len(entries)), entries, interval, method)
     return Discrete(found["a"], found["b"])

@@ -1,4 +1,4 @@
-"""Arrays as the module below takes them: of these numbers, in one piece, of this shape. No copy of what already is."""
+"""Converts arrays to the type and shape that the Rust module takes, contiguous; arrays that fit are not copied."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ def _fits(shape: Shape, found: tuple[int, ...]) -> bool:
 
 
 def floats(name: str, value: npt.ArrayLike, *shape: Union[int, str]) -> Floats:
-    """The value as float64, C-contiguous; a letter stands for any length."""
+    """The value as a C-contiguous float64 array of this shape, in which a letter stands for any length."""
     try:
         array = np.ascontiguousarray(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise KestirimError(f"{name}: expected numbers: {error}") from error
-    # NumPy makes a line of a number.
+    # `ascontiguousarray` turns a scalar into an array of shape (1,).
     found = np.shape(value) if array.shape == (1,) else array.shape
     if not _fits(shape, found):
         raise _refuse(name, shape, found)
@@ -45,7 +45,7 @@ def floats(name: str, value: npt.ArrayLike, *shape: Union[int, str]) -> Floats:
 
 
 def ints(name: str, value: npt.ArrayLike, *shape: Union[int, str]) -> Ints:
-    """The value as int64; numbers that are not whole are refused."""
+    """The value as an int64 array of this shape; numbers that are not whole are refused."""
     given: npt.NDArray[Any] = np.asarray(value)
     if given.dtype.kind not in "iub":
         whole = floats(name, value, *shape)
@@ -58,5 +58,5 @@ def ints(name: str, value: npt.ArrayLike, *shape: Union[int, str]) -> Ints:
 
 
 def maybe_floats(name: str, value: Optional[npt.ArrayLike], *shape: Union[int, str]) -> Optional[Floats]:
-    """None stays none."""
+    """The value as `floats` converts it; None stays None."""
     return None if value is None else floats(name, value, *shape)

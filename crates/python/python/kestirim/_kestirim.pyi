@@ -1,4 +1,4 @@
-"""What the Rust module offers; arrays are contiguous, of these shapes. Called by the package, not by you."""
+"""Interface of the Rust module, private to the package, which passes contiguous arrays of the right shapes."""
 
 from typing import Optional, TypedDict, final
 

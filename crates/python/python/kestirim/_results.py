@@ -1,4 +1,4 @@
-"""What the systems answer: frozen dataclasses of arrays."""
+"""Results of the systems: frozen dataclasses of arrays."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 
 class Health(IntEnum):
-    """How far an estimate can be relied upon: the values of a result's ``health``."""
+    """Degree to which an estimate can be relied upon: the values of a result's ``health``."""
 
     GOOD = 0
-    """As its standard deviation says."""
+    """The estimate is as good as its standard deviation says."""
     DEGRADED = 1
-    """Worse than with better data; what is said of its accuracy still holds, more or less."""
+    """The estimate is worse than with better data; its stated accuracy still holds approximately."""
     BAD = 2
-    """It may be wrong by far more than anything says."""
+    """The estimate may be wrong by far more than its stated accuracy."""
 
 
 _AXES = ("x", "y", "z")
@@ -32,13 +32,13 @@ _AXES = ("x", "y", "z")
 
 @dataclass(frozen=True)
 class Frame:
-    """What has a row a sample."""
+    """Base class of results with one row per sample."""
 
     t: Floats
-    """(n,) s: of each row."""
+    """(n,) s: time of each row."""
 
     def to_dataframe(self) -> pd.DataFrame:
-        """All arrays with a row a sample as columns (``position_x`` …); needs pandas."""
+        """The arrays with one row per sample, as columns (``position_x`` …) of a data frame; needs pandas."""
         import pandas
 
         columns: dict[str, npt.NDArray[Any]] = {}
@@ -61,16 +61,16 @@ def _axes(*names: str) -> dict[str, tuple[str, ...]]:
 
 @dataclass(frozen=True)
 class Strides(Frame):
-    """The strides of a walk, m of them; `t` is the end of the stance that each arrived at."""
+    """The m strides of a walk; `t` is the end of the stance at which each arrived."""
 
     position: Floats
-    """(m, 3) m, earth: where that is."""
+    """(m, 3) m: position of that stance, earth frame."""
     length: Floats
-    """(m,) m: horizontal distance from the stance before."""
+    """(m,) m: horizontal distance from the preceding stance."""
     duration: Floats
-    """(m,) s: time since the end of the stance before."""
+    """(m,) s: time since the end of the preceding stance."""
     heading_change: Floats
-    """(m,) rad: turn from the stride before, anticlockwise from above."""
+    """(m,) rad: change of direction from the preceding stride, anticlockwise from above."""
     sigma: Floats
     """(m, 3) m: standard deviations of the position."""
 
@@ -80,165 +80,165 @@ class Strides(Frame):
 
 @dataclass(frozen=True)
 class Walk(Frame):
-    """Where a foot walked: n samples. Earth has z up, its origin is where the foot stood first."""
+    """The path of a walking foot: n samples. The earth frame has z up; its origin is where the foot first stood."""
 
     position: Floats
-    """(n, 3) m, earth."""
+    """(n, 3) m: position of the sensor, earth frame."""
     velocity: Floats
-    """(n, 3) m/s, earth."""
+    """(n, 3) m/s: velocity of the sensor, earth frame."""
     orientation: Floats = dataclasses.field(metadata=_axes("w", "x", "y", "z"))
-    """(n, 4) quaternion w, x, y, z: body to earth."""
+    """(n, 4) quaternion w, x, y, z: orientation of the sensor, from the body to the earth frame."""
     stance: Bools
-    """(n,) whether the foot stands."""
+    """(n,) whether the foot stands at each sample."""
     sigma: Floats
-    """(n, 3) m: standard deviations of the position, those after the stride before."""
+    """(n, 3) m: standard deviations of the position, as after the preceding stride."""
     health: Codes
-    """(n,) values of `Health`."""
+    """(n,) reliability of each estimate: values of `Health`."""
     strides: Strides
-    """The strides."""
+    """The strides of the walk."""
     path_length: float
-    """m: horizontal, from stance to stance."""
+    """m: length of the horizontal path, from stance to stance."""
     closure: float
     """m: horizontal distance from start to end."""
     heading_rate: Optional[float]
-    """rad/s: at which the heading drifted, as a magnetometer showed it and as the path was corrected by."""
+    """rad/s: drift of the heading that the magnetometer showed and the path was corrected for; None without it."""
     warnings: tuple[str, ...]
-    """What the log and the walk show that harms an estimate: a sentence each."""
+    """Findings in the log and the walk that impair an estimate: a sentence each."""
     reasons: tuple[str, ...]
     """Why the walk is not good, in words; empty if it is."""
 
 
 @dataclass(frozen=True)
 class ImuLog(Frame):
-    """What a log of an inertial sensor says: n samples, in the sensor's axes."""
+    """A log of an inertial sensor: n samples, in the sensor's axes."""
 
     accel: Floats
-    """(n, 3) m/s², specific force: +9.8 upwards at rest."""
+    """(n, 3) m/s²: specific force, +9.8 upwards at rest."""
     gyro: Floats
-    """(n, 3) rad/s."""
+    """(n, 3) rad/s: angular rate."""
     mag: Optional[Floats]
-    """(n, 3) in the log's unit, not a number where it was not measured; None if the log has no magnetometer."""
+    """(n, 3) magnetic field in the log's unit, NaN where it was not measured; None if the log has no magnetometer."""
     understood: tuple[str, ...]
-    """How its columns and units were understood, and from what: a sentence each."""
+    """How the columns and units of the log were interpreted, and for what reason: a sentence each."""
     warnings: tuple[str, ...]
-    """What was damaged and left out, and what of the rest harms a walk: a sentence each."""
+    """Damage that was skipped, and findings in the rest that impair the estimate of a walk: a sentence each."""
 
 
 @dataclass(frozen=True)
 class SmoothedTag(Frame):
-    """Where a tag was, given what was measured before and after, at the times of its track; and the errors of a anchors."""
+    """Smoothed positions of a tag, from the measurements before and after, at the m times of its track; biases of its a
+    anchors."""
 
     position: Floats
     """(m, 3) m, room."""
     sigma: Floats
-    """(m, 3) m: standard deviations; not a number where nothing tells one (z in the plane)."""
+    """(m, 3) m: standard deviations of the position; NaN where there is none (z in the plane)."""
     health: Codes
-    """(m,) values of `Health`."""
+    """(m,) reliability of each estimate: values of `Health`."""
     biases: Floats = dataclasses.field(metadata={"rows": False})
-    """(a, 2) m: what each measures too long in addition to all of them and to what was known, and its standard deviation."""
+    """(a, 2) m: bias of each anchor beyond the common bias and what was known, and its standard deviation."""
     common_bias: tuple[float, float]
-    """m: what all of them measure too long, and its standard deviation."""
+    """m: bias common to the ranges of all anchors, and its standard deviation."""
     excess_in_10_m: tuple[float, float]
-    """m: what more they do in 10 m of distance, and its standard deviation."""
+    """m: increase of the common bias over 10 m of distance, and its standard deviation."""
 
 
 @dataclass(frozen=True)
 class TagTrack(Frame):
-    """Where a tag was: m times at which there were ranges, of n ranges."""
+    """The track of a tag: m times at which there were ranges, from n ranges."""
 
     position: Floats
-    """(m, 3) m, room; not a number while it is not known."""
+    """(m, 3) m: position of the tag, room frame; NaN while it is not known."""
     sigma: Floats
-    """(m, 3) m: standard deviations; not a number where the tracker knows none (z in the plane)."""
+    """(m, 3) m: standard deviations of the position; NaN where the tracker has none (z in the plane)."""
     health: Codes
-    """(m,) values of `Health`."""
+    """(m,) reliability of each estimate: values of `Health`."""
     taken: Bools = dataclasses.field(metadata={"rows": False})
-    """(n,) whether each range was taken in."""
+    """(n,) whether each range was used."""
     nis: Floats = dataclasses.field(metadata={"rows": False})
-    """(n,) normalised innovation squared of each range; not a number where it was not weighed."""
+    """(n,) normalised innovation squared of each range; NaN where it was not compared with an estimate."""
     lost: float
-    """s: how long the position was not known after the first range."""
+    """s: time without a position after the first range."""
     height: Optional[float]
-    """m: the height that the ranges told, if it was not given."""
+    """m: height of the tag as determined from the ranges; None if it was given."""
     height_sigma: Optional[float]
-    """m: its standard deviation."""
+    """m: standard deviation of `height`."""
     smoothed: Optional[SmoothedTag]
-    """The same smoothed, if that was asked for and tells more."""
+    """The smoothed track, if it was requested and nothing in `not_smoothed` prevents it."""
     not_smoothed: Optional[str]
-    """Why it is not, in words, if it was asked for and is not."""
+    """Why the track is not smoothed, in words, if that was requested."""
     warnings: tuple[str, ...]
-    """What the log shows that harms a track, and what was changed of it: a sentence each."""
+    """Findings in the log that impair a track, and changes that were made to the log: a sentence each."""
     reasons: tuple[str, ...]
     """Why the track is not good, in words; empty if it is."""
 
 
 @dataclass(frozen=True)
 class UserTrack(Frame):
-    """Where a drone's user was thought to be after each of m measurements, or after the last one alone."""
+    """Estimated places of a drone's user: m estimates, each after a measurement, or one after the last."""
 
     position: Floats
-    """(m, 2) m, as the drone's places."""
+    """(m, 2) m: place of the user, in the coordinates of the drone's positions."""
     sigma: Floats
-    """(m,) m: root mean square distance from the position that is expected."""
+    """(m,) m: expected root mean square error of the place."""
     level: Floats
-    """(m,) dB: what the transmitter sends (over open ground: what is received at one metre); not a number where
-    losses were measured."""
+    """(m,) dB: level of the transmitter (over open ground: received at one metre); NaN if losses were measured."""
     health: Codes
-    """(m,) values of `Health`."""
+    """(m,) reliability of each estimate: values of `Health`."""
     measurements: int
-    """How many were used."""
+    """Number of measurements that were used."""
     next_waypoint: Optional[tuple[float, float, float, float]]
-    """Where one more measurement is expected to tell most: x, y, height (m), and the sigma (m) that is expected after it; None
-    among buildings."""
+    """Place where one more measurement is expected to be most informative: x, y, height (m), and the expected sigma (m)
+    after it; None among buildings."""
     warnings: tuple[str, ...]
-    """What the flight shows that harms an estimate: a sentence each."""
+    """Findings in the flight that impair an estimate: a sentence each."""
     reasons: tuple[str, ...]
     """Why the last estimate is not good, in words; empty if it is."""
 
 
 @dataclass(frozen=True)
 class FlightTrack(Frame):
-    """How an aircraft flew: n samples."""
+    """Longitudinal motion of an aircraft: n samples."""
 
     state: Floats = dataclasses.field(metadata=_axes("alpha", "q", "V", "theta"))
-    """(n, 4) angle of attack rad, pitch rate rad/s, airspeed m/s, pitch rad."""
+    """(n, 4) angle of attack (rad), pitch rate (rad/s), airspeed (m/s), pitch angle (rad)."""
     sigma: Floats = dataclasses.field(metadata=_axes("alpha", "q", "V", "theta"))
-    """(n, 4) their standard deviations; not a number of an observer, which knows none."""
+    """(n, 4) standard deviations of the state; NaN for an observer, which has none."""
     innovations: Floats = dataclasses.field(metadata=_axes())
-    """(n, p) measured less expected, in the outputs' units; not a number where nothing was measured."""
+    """(n, p) innovations, measured minus expected, in the outputs' units; NaN where nothing was measured."""
     rejected: Ints = dataclasses.field(metadata={"rows": False})
-    """(p,) how many times each output contradicted the estimate and was left out."""
+    """(p,) number of measurements of each output that were rejected for contradicting the estimate."""
     health: Codes
-    """(n,) values of `Health`."""
+    """(n,) reliability of each estimate: values of `Health`."""
     warnings: tuple[str, ...]
-    """What the log shows that harms an estimate, and what contradicts the model: a sentence each."""
+    """Findings in the log that impair an estimate, and contradictions to the model: a sentence each."""
     reasons: tuple[str, ...]
-    """Why not all of it is good, in words; empty if it is."""
+    """Why not all of the flight's estimates are good, in words; empty if they are."""
 
 
 @dataclass(frozen=True)
 class ReceiverTrack(Frame):
-    """Where a receiver was: m epochs with a solution; `t` counts from the midnight before the first one."""
+    """Positions of a receiver: m epochs with a solution; `t` counts from the midnight before the first epoch."""
 
     position: Floats
-    """(m, 3) m, ECEF: the marker, free of tides."""
+    """(m, 3) m: position of the marker, ECEF, free of tides."""
     sigma: Floats = dataclasses.field(metadata=_axes("east", "north", "up"))
-    """(m, 3) m: standard deviations to the east, north and up."""
+    """(m, 3) m: standard deviations of the position to the east, north and up."""
     clock: Floats
     """(m,) m: the receiver's clock minus GPS time."""
     wet_delay: Floats
-    """(m,) m: zenith delay of the wet troposphere."""
+    """(m,) m: wet zenith delay of the troposphere."""
     satellites: Ints
-    """(m,) how many each solution is from."""
+    """(m,) number of satellites in each solution."""
     converged: Bools
-    """(m,) whether ambiguities are known: the standard deviation is below 10 cm."""
+    """(m,) whether the ambiguities are known: the standard deviation of the position is below 10 cm."""
     health: Codes
-    """(m,) values of `Health`."""
+    """(m,) reliability of each estimate: values of `Health`."""
     epochs: int
-    """How many epochs there were."""
+    """Number of epochs, with and without a solution."""
     fixed_epochs: int
-    """In how many of them some ambiguities were whole."""
+    """Number of epochs with ambiguities fixed to integers."""
     warnings: tuple[str, ...]
-    """What the readers found suspicious in the files."""
+    """Suspicious findings in the files and the solutions: a sentence each."""
     reasons: tuple[str, ...]
-    """Why not all of it is good, in words; empty if it is."""
+    """Why not all of the positions are good, in words; empty if they are."""

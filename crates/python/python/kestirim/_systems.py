@@ -1,4 +1,4 @@
-"""The five systems: a recording in, what was estimated out."""
+"""The five systems: each call takes a recording and returns the estimates."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ def read_imu(
     topic: Optional[str] = None,
     strict: bool = False,
 ) -> ImuLog:
-    """A stranger's log of an inertial sensor: text of any device, ArduPilot, PX4, a ROS 1 bag, MCAP, or a phone's export.
+    """Reads a log of an inertial sensor: text of any device, ArduPilot, PX4, a ROS 1 bag, MCAP, or a phone's export.
 
-    Columns, units and axes are found and told, or the log is refused with what to say: columns such as "t=time,gy=-GyrZ",
-    units such as "acc=g,gyro=deg/s,t=ms", the format's name, the topic of one sensor among several. A damaged line is skipped
-    and told; strict: it refuses the log.
+    Columns, units and axes are recognised and reported; a log that is ambiguous is refused with a hint which argument
+    to give. columns: such as "t=time,gy=-GyrZ". units: such as "acc=g,gyro=deg/s,t=ms". format: name of the format.
+    topic: that of one sensor among several. Damaged lines are skipped and reported; strict: they refuse the log.
 
     >>> log = read_imu("walk.csv")  # doctest: +SKIP
     >>> walk = pedestrian(log.t, log.accel, log.gyro, mag=log.mag)  # doctest: +SKIP
 
-    The same as `host-sim replay pedestrian --log` reads, with what `host-sim check pedestrian` finds.
+    Equals what `host-sim replay pedestrian --log` reads, with the findings of `host-sim check pedestrian`.
     """
     return ImuLog(**_kestirim.read_imu(os.fspath(path), columns, units, format, topic, strict))
 
@@ -56,22 +56,22 @@ def pedestrian(
     contact_height: Optional[float] = None,
     scalar: Scalar = "f32",
 ) -> Walk:
-    """Where a foot walked, from an IMU on it.
+    """Estimates the path of a walking foot, from an IMU on it.
 
     t: (n,) s, from 0 on. accel: (n, 3) m/s², specific force in the sensor's axes: +9.8 upwards at rest.
-    gyro: (n, 3) rad/s, the same axes.
+    gyro: (n, 3) rad/s, in the sensor's axes.
 
-    mag: (n, 3) in any unit, the same axes, not a number where it was not measured: corrects the heading where the foot stands
-    twice in the same field. Not causally, and with "ekf" alone.
+    mag: (n, 3) magnetic field in any unit, in the sensor's axes, NaN where it was not measured: corrects the heading
+    where the foot stands twice in the same field. It is used only if `causal` is False and `tracker` is "ekf".
 
     sensor: "industrial" for calibrated units (Xsens, NGIMU, 3DM-GX), whose gyroscope starts within 3 mrad/s of zero;
     "consumer" for bare chips (MPU-6050, the Razor).
-    causal: look only backwards, as firmware must; else the whole recording serves every sample.
+    causal: use past samples only, as firmware must; by default every estimate uses the whole recording.
     tracker: "ekf", an error-state Kalman filter, or "lite", the paper's architecture.
-    contact_height: m from the ball of the foot, about which it rolls, up to the sensor; 0.07 unless it is said.
-    scalar: the number type of the estimator.
+    contact_height: m, height of the sensor above the ball of the foot, about which the foot rolls; 0.07 by default.
+    scalar: number type of the estimator.
 
-    The same as `host-sim replay pedestrian --sensor …`, to the bit.
+    Equals `host-sim replay pedestrian --sensor …`, to the bit.
     """
     times = floats("t", t, "n")
     count = len(times)
@@ -119,21 +119,22 @@ def robot(
     scalar: Scalar = "f32",
     smooth: bool = False,
 ) -> TagTrack:
-    """Where a tag was, from ranges to ultra-wideband anchors.
+    """Estimates the track of a tag, from ranges to ultra-wideband anchors.
 
-    anchors: (a, 3) m, room: right-handed with z up. t: (n,) s. anchor: (n,) rows of `anchors`. range: (n,) m; not a number
-    where none came.
+    anchors: (a, 3) m, positions in the room frame, right-handed with z up. t: (n,) s. anchor: (n,) row in `anchors` of
+    each range. range: (n,) m, NaN where none was received.
 
-    height: m, of the tag, in the plane; or heights: times (k,) s and heights (k,) m. Of neither the ranges tell it, if
-    they can.
-    biases: (a,) m that each anchor measures too long, if they are calibrated.
-    imu: times (k,) s and accelerations (k, 3) m/s², body, with or without gravity: tells standing from moving.
+    height: m, of the tag, in the plane; or heights: times (k,) s and heights (k,) m. With neither, the height is
+    determined from the ranges, if they allow it.
+    biases: (a,) m by which each anchor measures too long, if the anchors are calibrated.
+    imu: times (k,) s and accelerations (k, 3) m/s², body axes, with or without gravity: distinguishes standing from
+    moving.
     wheels: times (k,) s, speeds (k,) m/s and turn rates (k,) rad/s.
-    room: x0, y0, x1, y1, m: two opposite corners in which the tag is.
+    room: x0, y0, x1, y1, m: two opposite corners of the room that the tag is in.
     dim: 2 in the plane at a known height, 3 in space.
-    smooth: find each position from what was measured before and after, too, and what the anchors measure too long: `smoothed`.
+    smooth: also estimate each position from the measurements before and after it, and the anchors' biases: `smoothed`.
 
-    The same as `host-sim replay robot`, to the bit.
+    Equals `host-sim replay robot`, to the bit.
     """
     places = floats("anchors", anchors, "a", 3)
     times = floats("t", t, "n")
@@ -199,19 +200,20 @@ def drone(
     window: Optional[float] = None,
     every: bool = True,
 ) -> UserTrack:
-    """Where the user of a drone is, from path losses or levels alone.
+    """Estimates the place of a drone's user, from path losses or levels alone.
 
-    t: (n,) s. position: (n, 2) m to the east and north. height: (n,) m above the user.
-    path_loss: (n,) dB, or rssi: (n,) dB of unknown offset; one of the two, not a number where none came.
-    heading: (n,) degrees clockwise from north, where the drone's nose pointed; not a number where that is not known.
+    t: (n,) s. position: (n, 2) m to the east and north, of the drone. height: (n,) m, of the drone above the user.
+    path_loss: (n,) dB, or rssi: (n,) dB of unknown offset; exactly one of the two, NaN where nothing was measured.
+    heading: (n,) degrees clockwise from north, direction of the drone's nose; NaN where it is not known.
 
-    area: (k, 2) m, the corners of where the user can be, one after the other; else up to 500 m beyond the flight.
-    environment: what is built on the ground; "open" is nothing.
-    frequency: Hz, of path losses; what an environment adds to free space is that of 2e9.
-    window: s; measurements of so long count, for a user who moves; None: all.
-    every: an estimate after each measurement; else one, after the last.
+    area: (k, 2) m, corners of the polygon in which the user can be, in order; by default up to 500 m beyond the flight.
+    environment: buildings on the ground; "open" for none.
+    frequency: Hz, of path losses; the excess of an environment over free space is that at 2e9.
+    window: s, only measurements of the last `window` seconds count, for a user who moves; None for all.
+    every: estimate after each measurement (over open ground and with a window at most 30 times, evenly distributed);
+    False estimates only after the last one (among buildings without a window, it has no effect).
 
-    The same as `host-sim replay drone`, to the bit.
+    Equals `host-sim replay drone`, to the bit.
     """
     if (path_loss is None) == (rssi is None):
         raise KestirimError("drone: expected path_loss or rssi, one of the two")
@@ -237,21 +239,24 @@ def drone(
 
 @dataclass(frozen=True)
 class UavModel:
-    """A linear model of an aircraft near its steady flight: states α (rad), q (rad/s), V (m/s), θ (rad); inputs δe (rad)
-    and δt (0 to 1)."""
+    """A linear model of an aircraft near its steady flight.
+
+    States: angle of attack α (rad), pitch rate q (rad/s), airspeed V (m/s), pitch angle θ (rad). Inputs: elevator δe
+    (rad) and throttle δt (0 to 1).
+    """
 
     a: Floats
-    """(4, 4) of dx/dt = A x + B u, 1/s …; with an `interval`, of x⁺ = A x + B u."""
+    """(4, 4) A of dx/dt = A x + B u, 1/s …; with an `interval`, A of x⁺ = A x + B u."""
     b: Floats
-    """(4, 2)."""
+    """(4, 2) B of the same equation as `a`."""
     interval: Optional[float] = None
-    """s between steps, of a model in discrete time."""
+    """s, interval between steps of a model in discrete time; None for continuous time."""
     trim: Optional[tuple[list[float], list[float]]] = None
-    """State (4) and input (2) of the steady flight, which is taken from absolute values."""
+    """State (4) and input (2) of the steady flight, which are subtracted from absolute values; None if unknown."""
 
     @classmethod
     def named(cls, name: Literal["P1", "P2", "P3"]) -> UavModel:
-        """A known aircraft: "P1" the Aerosonde, "P2" what the thesis says of its own, "P3" the Navion."""
+        """The model of a known aircraft: "P1" the Aerosonde, "P2" the thesis' own as stated there, "P3" the Navion."""
         found = _kestirim.uav_model(name)
         return cls(found["a"], found["b"], trim=found["trim"])
 
@@ -274,17 +279,17 @@ def uav(
     ratio: float = 1.0,
     scalar: Scalar = "f64",
 ) -> FlightTrack:
-    """How an aircraft flies: angle of attack, pitch rate, airspeed and pitch from some sensors, with gaps.
+    """Estimates angle of attack, pitch rate, airspeed and pitch angle of an aircraft, from some sensors, with gaps.
 
-    t: (n,) s, at a regular interval. inputs: (n, 2) elevator rad and throttle 0 to 1. measured: (n, p), not a number where
-    nothing was measured. outputs: which states those are, of "alpha", "q", "V", "theta"; or C itself, (p, 4).
+    t: (n,) s, at a regular interval. inputs: (n, 2) elevator (rad) and throttle (0 to 1). measured: (n, p), NaN where
+    nothing was measured. outputs: the measured states, of "alpha", "q", "V", "theta"; or the matrix C itself, (p, 4).
 
-    model: of the aircraft. absolute: values are absolute, and the model's trim is taken from them; else deviations.
-    estimator: a Kalman filter or a Luenberger observer, with `poles` in 1/s.
-    input_noise, output_noise: standard deviations of what reaches the aircraft beside its inputs, a sample, and of the
-    outputs (p,); those of usual sensors unless they are said. ratio: Q/R of the filter, times that of the noise.
+    model: of the aircraft. absolute: values are absolute, and the model's trim is subtracted; by default, deviations.
+    estimator: a Kalman filter, or a Luenberger observer with these `poles` in 1/s.
+    input_noise, output_noise: standard deviations of the noise on the inputs, per sample, and of the outputs (p,); by
+    default those of usual sensors. ratio: Q/R of the filter, relative to that of the noise.
 
-    The same as `host-sim replay uav`, to the bit.
+    Equals `host-sim replay uav`, to the bit.
     """
     aircraft = model if isinstance(model, UavModel) else UavModel.named(model)
     if absolute and aircraft.trim is None:
@@ -340,22 +345,26 @@ def gnss(
     until: Optional[float] = None,
     smooth: bool = False,
 ) -> ReceiverTrack:
-    """Where a receiver of GPS, Galileo, GLONASS and BeiDou is, from files; any may be packed with gzip.
+    """Estimates the positions of a receiver of GPS, Galileo, GLONASS and BeiDou, from files; any may be gzipped.
 
-    To a centimetre: obs: what the receiver observed, RINEX 2, 3 or 4, Compact RINEX, or a stream of UBX or RTCM. sp3: precise
-    orbits. antex: phase centres of antennas. clk: precise clocks, RINEX; else those of the orbit files. To some metres, of GPS
-    and Galileo, without sp3: nav: what the satellites broadcast, RINEX 2, 3 or 4, which a stream holds itself.
-    bias: biases of codes and phases, Bias-SINEX. blq: ocean loading of the station. erp: the Earth's rotation, for the tide of the pole.
+    obs: observations of the receiver, RINEX 2, 3 or 4, Compact RINEX, or a stream of UBX or RTCM.
+    For positions to a centimetre: sp3: precise orbits. antex: phase centres of antennas. clk: precise clocks, RINEX; by
+    default those of the orbit files.
+    For positions to some metres, from GPS, Galileo and BeiDou, without sp3: nav: broadcast ephemerides, RINEX 2, 3 or
+    4; a stream contains its own.
+    bias: biases of codes and phases, Bias-SINEX. blq: ocean loading of the station. erp: Earth rotation, for the pole
+    tide.
 
-    process_noise: of a receiver that moves, m²/s added to each coordinate's variance (100: each epoch stands alone); None
-    for one at rest. method: "filter", or "single", each position from the codes of its epoch alone, which one carrier serves.
-    filter: what is done about observations that do not fit. systems: satellites of which systems serve, "all" those that are
-    observed and known. ambiguities: "fixed" makes them whole numbers where that passes the tests, of GPS and Galileo with
-    integer clocks or biases of phases. mask: rad, lowest elevation, 8° unless it is said. gradient: m,
-    standard deviation of the troposphere's gradients (0: none), 0.0005 of the default filter. until: s, the last epoch.
-    smooth: put together what is found forwards and backwards, from the first epoch on.
+    process_noise: m²/s, of a moving receiver: added to each coordinate's variance (100: each epoch stands alone); None
+    for a receiver at rest. method: "filter", or "single" for each position from the codes of its epoch alone, for which
+    one carrier is enough. filter: treatment of observations that do not fit. systems: systems whose satellites are
+    used; "all" for all that are observed and known. ambiguities: "fixed" fixes them to integers where that passes the
+    tests, for GPS and Galileo with integer clocks or phase biases. mask: rad, elevation mask, 8° by default. gradient:
+    m, standard deviation of the troposphere's gradients (0: none), 0.0005 by default in the default filter. until: s
+    since the midnight before the first epoch, the last epoch. smooth: combine the solutions forwards and backwards,
+    from the first epoch on.
 
-    The same as `host-sim replay gnss`, to the bit.
+    Equals `host-sim replay gnss`, to the bit.
     """
     if sp3 and not antex:
         raise KestirimError("antex: expected phase centres of antennas beside precise orbits")

@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use crate::arrays::{Line, Results, Table, doubles, rows, values};
 use crate::error::{KestirimError, refused, refused_at};
 
-/// Quaternions and biases after each sample.
+/// Computes quaternions and gyroscope biases after each sample.
 #[pyfunction]
 #[pyo3(signature = (interval, gyro, accel, start, bias, tilt, bias_gain, gate))]
 pub(crate) fn attitude<'py>(

@@ -28,7 +28,7 @@ fn sizes(square: &[f64], other: &[f64]) -> (usize, usize) {
 /// A gain, row by row, and the poles that it places.
 type Placed = (Vec<f64>, Vec<(f64, f64)>);
 
-/// L that places the eigenvalues of A − L C, and those that it really places.
+/// The gain L that places the eigenvalues of A − L C, and the actual eigenvalues.
 #[pyfunction]
 pub(crate) fn place<'py>(
     py: Python<'py>,
@@ -59,7 +59,7 @@ pub(crate) fn place<'py>(
     Ok(Results::new(py).shaped("gain", gain, [states, outputs])?.with("poles", poles)?.done())
 }
 
-/// The steady Kalman filter: covariances before and after an update, and both gains.
+/// The steady-state Kalman filter: the covariances before and after an update, and both gains.
 #[pyfunction]
 pub(crate) fn dare<'py>(
     py: Python<'py>,
@@ -100,7 +100,7 @@ pub(crate) fn dare<'py>(
         .done())
 }
 
-/// A and B of discrete time.
+/// Discretises A and B.
 #[pyfunction]
 pub(crate) fn c2d<'py>(
     py: Python<'py>,

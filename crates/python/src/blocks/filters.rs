@@ -216,7 +216,7 @@ impl Filter {
         self.filter.restore(snapshot, &self.made_for())
     }
 
-    /// z: (m,); answers with the NIS.
+    /// Updates with measurements z (m,); returns their NIS.
     fn update(&mut self, z: Line<'_>) -> PyResult<f64> {
         let innovation = self.innovation(values(&z)?);
         let mut next = self.filter.copy();
@@ -225,7 +225,7 @@ impl Filter {
         Ok(nis)
     }
 
-    /// Innovations (m,) with rows (m, n) of a model that was linearised elsewhere; answers with the NIS.
+    /// Updates with innovations (m,) and rows (m, n) of a model that was linearised elsewhere; returns the NIS.
     fn correct(&mut self, innovation: Line<'_>, h: Table<'_>) -> PyResult<f64> {
         let count = self.filter.mean().len();
         let rows: Vec<Row> = values(&h)?.chunks_exact(count).map(row_of).collect();
@@ -239,7 +239,7 @@ impl Filter {
         Ok(nis)
     }
 
-    /// zs: (n, m). Predicts and updates with each row; all of them, or none.
+    /// Predicts and updates with each row of zs (n, m): all rows, or none.
     fn filter<'py>(&mut self, py: Python<'py>, zs: Table<'py>) -> PyResult<Bound<'py, PyDict>> {
         let zs = values(&zs)?;
         let (mut next, rows) = (self.filter.copy(), &self.rows);

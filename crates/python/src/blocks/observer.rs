@@ -77,7 +77,7 @@ fn build<const N: usize>(
     Ok(Box::new(observer.map_err(refused)?))
 }
 
-/// x̂⁺ = A x̂ + B u + L (y − C x̂).
+/// A Luenberger observer: x̂⁺ = A x̂ + B u + L (y − C x̂).
 #[pyclass]
 pub(crate) struct Observer {
     kind: Box<dyn AnyObserver>,
@@ -121,7 +121,7 @@ impl Observer {
         self.kind.restore(snapshot, &self.made_for())
     }
 
-    /// us: (n, m), ys: (n, p), not a number where nothing was measured. All rows, or none.
+    /// Processes inputs us (n, m) and measurements ys (n, p), NaN where nothing was measured: all rows, or none.
     fn run<'py>(
         &mut self,
         py: Python<'py>,

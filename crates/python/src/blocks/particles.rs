@@ -170,13 +170,13 @@ impl Cloud {
         self.cloud.moments()
     }
 
-    /// states: (n, d)
+    /// Replaces the states of the particles, (n, d).
     fn move_to(&mut self, states: Table<'_>) -> PyResult<()> {
         self.cloud.move_to(values(&states)?, &mut self.rng);
         Ok(())
     }
 
-    /// Log-likelihoods (n,); answers with the effective number and the logarithm of the evidence.
+    /// Updates with log-likelihoods (n,); returns the effective number and the logarithm of the evidence.
     fn update(&mut self, logs: Line<'_>) -> PyResult<(f64, f64)> {
         let logs = values(&logs)?;
         if logs.len() != self.cloud.len() {

@@ -1,78 +1,64 @@
-//! The data of files as the observation model takes them: `kestirim-gnss-files` to `kestirim-gnss-ppp`, bit for bit.
+//! Conversion of the data of files to those of the observation model: `kestirim-gnss-files` to `kestirim-gnss-ppp`, bit
+//! for bit.
 
 use kestirim_gnss_files::{self as files, Message, Observed};
 use kestirim_gnss_ppp::{
-    Carriers, ClockSample, Constellation, Ephemeris, GpsTime, OceanLoading, OrbitSample, Pattern,
+    Carriers, ClockSample, Ephemeris, GpsTime, NavigationMessage, OceanLoading, OrbitSample,
+    Pattern,
 };
 use nalgebra::Vector3;
 
-/// Observations of one instant.
+/// The observations of one instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Epoch {
     /// The instant by the receiver's clock.
     pub time: GpsTime,
-    /// Whether the receiver was without power since the epoch before.
+    /// Whether the receiver was without power since the previous epoch.
     pub power_failure: bool,
     /// The satellites, each once.
     pub satellites: Vec<Observed>,
 }
 
-/// An epoch of a file.
+/// Converts an epoch of a file.
 pub fn epoch(epoch: files::Epoch) -> Epoch {
     let files::Epoch { time: instant, power_failure, satellites } = epoch;
     Epoch { time: time(instant), power_failure, satellites }
 }
 
-/// An instant.
+/// Converts an instant.
 pub(super) const fn time(time: files::GpsTime) -> GpsTime {
     GpsTime::new_in_day(time.day(), time.second())
 }
 
-/// A sample of an orbit that counts from `reference`.
+/// Converts a sample of an orbit, whose time counts from `reference`.
 pub(super) fn orbit_sample(reference: GpsTime, sample: &files::OrbitSample) -> OrbitSample {
     OrbitSample::from_ecef(reference, time(sample.time), &Vector3::from(sample.position))
 }
 
-/// A sample of a clock that counts from `reference`.
+/// Converts a sample of a clock, whose time counts from `reference`.
 pub(super) fn clock_sample(reference: GpsTime, instant: files::GpsTime, bias: f64) -> ClockSample {
     ClockSample { second: time(instant).since(reference), bias }
 }
 
-/// An ephemeris of GPS holds for half its fit interval, which is four hours unless it tells another one …
-const USUAL_FIT: f64 = 14_400.0;
-/// … one of Galileo is not to be used when it is older, s (Galileo OS service definition), …
-const OLDEST_GALILEO: f64 = 14_400.0;
-/// … and one of BeiDou is sent for an hour (BDS-SIS-ICD-B1I) and serves for another, s.
-const OLDEST_BEIDOU: f64 = 7_200.0;
-
-/// An ephemeris with the clock of two carriers; none of which the group delay between its own carriers and these is not told. The
-/// accuracy is infinite where the satellite calls itself unhealthy or tells none: such an ephemeris must not be used.
+/// Converts an ephemeris to the clock of two carriers; `None` if the group delay between its own carriers and these is
+/// not given. The accuracy is infinite if the satellite declares itself unhealthy or states none: such an ephemeris
+/// must not be used.
 pub(super) fn ephemeris(told: &files::Ephemeris, carriers: Carriers) -> Option<Ephemeris> {
-    let [first, second] = told.group_delays;
-    let (delay, own) = match (carriers, told.message) {
-        (Carriers::L1L2, Message::Lnav) | (Carriers::E1E5a, Message::Fnav) => (first, first),
-        (Carriers::E1E5b, Message::Inav) => (second, second),
-        // Galileo OS SIS ICD 5.1.5: the clock of E1 alone is the same, whichever it is taken from.
-        (Carriers::E1E5a, Message::Inav) => (first, second),
-        // BDS-SIS-ICD-B1I, TGD1 and TGD2: the clock is that of B3I, and those of B1I and B2I are behind by their delays.
-        (Carriers::B1B3, Message::D1) => (first - carriers.ionosphere_free([first, 0.0]), first),
-        (Carriers::B1B2, Message::D1) => (first - carriers.ionosphere_free([first, second]), first),
-        _ => return None,
+    let message = match told.message {
+        Message::Lnav => NavigationMessage::Lnav,
+        Message::Inav => NavigationMessage::Inav,
+        Message::Fnav => NavigationMessage::Fnav,
+        Message::D1 => NavigationMessage::D1,
     };
-    let constellation = carriers.constellation();
-    let holds = match constellation {
-        Constellation::Gps => told.fit.unwrap_or(USUAL_FIT) / 2.0,
-        Constellation::Galileo => OLDEST_GALILEO,
-        Constellation::Glonass | Constellation::BeiDou => OLDEST_BEIDOU,
-    };
+    let clock = message.clock_reference(carriers, told.group_delays)?;
     let [offset, drift, ageing] = told.clock;
     let accuracy = told.accuracy.filter(|_| told.is_healthy).unwrap_or(f64::INFINITY);
     Some(Ephemeris {
-        constellation,
+        constellation: carriers.constellation(),
         time: time(told.time),
         clock_time: time(told.clock_time),
-        clock: [offset - own + delay, drift, ageing],
-        group_delay: delay,
+        clock: [offset + clock.correction, drift, ageing],
+        group_delay: clock.group_delay,
         root_of_axis: told.root_of_axis,
         eccentricity: told.eccentricity,
         mean_anomaly: told.mean_anomaly,
@@ -86,11 +72,11 @@ pub(super) fn ephemeris(told: &files::Ephemeris, carriers: Carriers) -> Option<E
         radius_terms: told.radius_terms,
         inclination_terms: told.inclination_terms,
         accuracy,
-        holds,
+        holds: told.fit.map_or(message.holds(), |fit| fit / 2.0),
     })
 }
 
-/// Two carriers.
+/// Converts a pair of carriers.
 pub(super) const fn carriers(carriers: files::Carriers) -> Carriers {
     match carriers {
         files::Carriers::L1L2 => Carriers::L1L2,
@@ -103,7 +89,7 @@ pub(super) const fn carriers(carriers: files::Carriers) -> Carriers {
     }
 }
 
-/// An antenna's phase centres on two carriers, if both are known.
+/// The phase centres of an antenna on two carriers, if both are known.
 pub(super) fn patterns(
     antenna: &files::Antenna,
     carriers: files::Carriers,
@@ -111,8 +97,8 @@ pub(super) fn patterns(
     antenna.on(carriers).map(|both| both.map(pattern))
 }
 
-/// The same of a receiver's antenna: one that was calibrated for GPS alone is taken to be on the first carrier of another system
-/// as on L1, and on the second as on L2.
+/// The phase centres of a receiver's antenna on two carriers. An antenna that was calibrated for GPS alone is taken to
+/// be on the first carrier of another system as on L1, and on the second as on L2.
 pub(super) fn receiver_patterns(
     antenna: &files::Antenna,
     carriers: files::Carriers,
@@ -131,7 +117,7 @@ fn pattern(centre: &files::PhaseCentre) -> Pattern<'_> {
     }
 }
 
-/// A station's ocean loading.
+/// Converts a station's ocean loading.
 pub(super) const fn ocean_loading(loading: &files::OceanLoading) -> OceanLoading {
     OceanLoading { amplitude: loading.amplitude, lag: loading.lag }
 }

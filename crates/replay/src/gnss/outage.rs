@@ -1,28 +1,28 @@
-//! Why epochs have no solution, in words that help.
+//! Outages: why epochs have no solution, in words that help.
 
 use std::fmt;
 
 use kestirim_ppp_filter::Error;
 
-/// Observed satellites that serve for nothing, by the reason.
+/// Numbers of observed satellites that are not used, by the reason.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Unused {
-    /// How many were observed.
+    /// The number of satellites observed.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub observed: usize,
-    /// A code or a phase is missing.
+    /// Satellites of which a code or a phase is missing.
     pub incomplete: usize,
-    /// There is no orbit at the time.
+    /// Satellites without an orbit at the time.
     pub no_orbit: usize,
-    /// There is no clock at the time.
+    /// Satellites without a clock at the time.
     pub no_clock: usize,
-    /// It stands too low.
+    /// Satellites below the elevation mask.
     pub below_mask: usize,
 }
 
 impl Unused {
-    /// Adds those of an epoch.
+    /// Adds the numbers of another epoch.
     pub const fn add(&mut self, other: &Self) {
         self.observed += other.observed;
         self.incomplete += other.incomplete;
@@ -31,7 +31,7 @@ impl Unused {
         self.below_mask += other.below_mask;
     }
 
-    /// How many there are for each reason that there is.
+    /// The number of satellites for each reason that occurs, in words.
     fn reasons(&self) -> Vec<String> {
         let reasons = [
             (self.no_orbit, "without an orbit"),
@@ -49,7 +49,7 @@ impl fmt::Display for Unused {
         let reasons = self.reasons();
         let plural = if self.observed == 1 { "" } else { "s" };
         match (self.observed, &*reasons) {
-            (0, _) => f.write_str("no satellite of GPS was observed"),
+            (0, _) => f.write_str("no satellite was observed"),
             (observed, []) => write!(f, "of {observed} observed satellite{plural}"),
             (observed, _) => {
                 write!(f, "of {observed} observed satellite{plural} {}", reasons.join(", "))
@@ -61,11 +61,11 @@ impl fmt::Display for Unused {
 /// An epoch without a solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outage {
-    /// What the filter says.
+    /// The error of the filter.
     pub error: Error,
-    /// When, s since the midnight before the first epoch.
+    /// The time, s since the midnight before the first epoch.
     pub t: f64,
-    /// Which satellites it was not given.
+    /// The satellites that were not given to the filter.
     pub unused: Unused,
 }
 
@@ -75,12 +75,12 @@ impl fmt::Display for Outage {
     }
 }
 
-/// The epochs without a solution: of each kind the first, and how many there are.
+/// The epochs without a solution: for each kind of error, the first one and their number.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Outages(Vec<(Outage, usize)>);
 
 impl Outages {
-    /// Adds one.
+    /// Adds an epoch without a solution.
     pub fn add(&mut self, outage: Outage) {
         match self.0.iter_mut().find(|(first, _)| first.error == outage.error) {
             Some((_, count)) => *count += 1,
@@ -88,17 +88,17 @@ impl Outages {
         }
     }
 
-    /// How many there are.
+    /// The number of epochs without a solution.
     pub fn count(&self) -> usize {
         self.0.iter().map(|(_, count)| count).sum()
     }
 
-    /// The first of all.
+    /// The first epoch without a solution.
     pub fn first(&self) -> Option<&Outage> {
         self.0.first().map(|(outage, _)| outage)
     }
 
-    /// A sentence for each kind.
+    /// A sentence for each kind of error.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
         self.0.iter().map(|(outage, count)| {
             let (epochs, the_first) =
@@ -135,6 +135,6 @@ mod tests {
                  observed satellite)",
             ]
         );
-        assert_eq!(Unused::default().to_string(), "no satellite of GPS was observed");
+        assert_eq!(Unused::default().to_string(), "no satellite was observed");
     }
 }

@@ -1,8 +1,9 @@
-//! Trackers that are given a walk while it comes.
+//! Trackers for walks in progress.
 
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
+use kestirim_health::Health;
 use kestirim_imu_calibration::{Calibration, Triad};
 use kestirim_pedestrian::detector::StanceDetector;
 use kestirim_pedestrian::{Ekf, Estimate, Lite, Navigator, Tracker};
@@ -13,37 +14,40 @@ use super::walk::imu_sample;
 use super::{Options, Sample, TrackerKind, sentences};
 use crate::{Number, ScalarKind, Stored};
 
-/// Something that follows a walk, as [`walk`](super::walk) does where all of it is there.
+/// A tracker that follows a walk in progress, as [`walk`](super::walk) does for a complete one.
 pub trait Follow: Debug {
-    /// Takes in a sample, or refuses it.
+    /// Processes a sample; returns false if the tracker rejects it.
     fn take(&mut self, sample: &Sample) -> bool;
 
-    /// Takes in that no sample follows.
+    /// Ends the walk: no sample follows.
     fn finish(&mut self);
 
-    /// Where the foot is, m, once there was a sample.
+    /// The position of the foot, m; `None` before the first sample.
     fn position(&self) -> Option<[f64; 3]>;
 
     /// Whether the foot stands.
     fn is_still(&self) -> bool;
 
-    /// How long the path is, m.
+    /// The length of the path, m.
     fn path_length_m(&self) -> f64;
 
-    /// How many strides there were.
+    /// The number of strides.
     fn strides(&self) -> u32;
 
-    /// What is wrong with the samples, in sentences.
+    /// The warnings about the samples, in sentences.
     fn warnings(&self) -> Vec<String>;
 
-    /// All that it needs to go on elsewhere, to the bit; none if it cannot be stored.
+    /// The doubts about the path; `None` before the first sample.
+    fn health(&self) -> Option<Health>;
+
+    /// The snapshot of everything that it needs to continue elsewhere, to the bit; `None` if it cannot be stored.
     fn snapshot(&self) -> Option<Vec<u8>>;
 
-    /// Goes on as the one that was stored; none, and as before, if that was no such tracker.
+    /// Continues from a snapshot; `None`, and no change, if that is not one of such a tracker.
     fn restore(&mut self, snapshot: &[u8]) -> Option<()>;
 }
 
-/// The tracker that is chosen, of samples of an IMU that measures wrong as its calibration says.
+/// Builds the chosen tracker, for samples of an IMU with the errors that its calibration describes.
 pub fn build(options: &Options, calibration: Option<&Calibration<f64>>) -> Box<dyn Follow> {
     match options.scalar {
         ScalarKind::F32 => build_in::<f32>(options, calibration),
@@ -67,7 +71,7 @@ fn build_in<T: Number + 'static>(
     }
 }
 
-/// The same calibration in another number type.
+/// Converts a calibration to another number type.
 fn cast<T: Scalar>(calibration: &Calibration<f64>) -> Calibration<T> {
     let cast = |triad: &Triad<f64>| Triad {
         offset: triad.offset.map(T::from_f64),
@@ -142,8 +146,12 @@ impl<T: Number, N: Navigator<T> + Stored + Debug, D: StanceDetector<T> + Stored 
     }
 
     fn warnings(&self) -> Vec<String> {
-        // Whether a foot ever stood is not known before it did.
+        // Whether the foot ever stood still is unknown before it did.
         if self.last.is_some() { sentences(self.tracker.warnings()) } else { Vec::new() }
+    }
+
+    fn health(&self) -> Option<Health> {
+        self.last.as_ref().map(|_| self.tracker.warnings().health())
     }
 
     fn snapshot(&self) -> Option<Vec<u8>> {
@@ -153,7 +161,7 @@ impl<T: Number, N: Navigator<T> + Stored + Debug, D: StanceDetector<T> + Stored 
     fn restore(&mut self, snapshot: &[u8]) -> Option<()> {
         let (strides, tracker) = snapshot.split_first_chunk()?;
         self.tracker = Stored::restored(tracker)?;
-        // The next sample has the next estimate.
+        // The next estimate comes with the next sample.
         (self.strides, self.last) = (u32::from_le_bytes(*strides), None);
         Some(())
     }

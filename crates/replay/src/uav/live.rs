@@ -1,7 +1,8 @@
-//! Estimators that are given a flight while it comes.
+//! Estimators for flights in progress.
 
 use std::fmt::Debug;
 
+use kestirim_health::Health;
 use kestirim_scalar::{Q16_16, Scalar};
 use kestirim_uav_estimator::{self as uav, Dynamics, FlightObserver};
 use nalgebra::{SMatrix, SVector};
@@ -11,26 +12,30 @@ use super::estimators::{Assumed, Filter, KEPT, filter, rows, sized};
 use super::{EstimatorKind, Model, Options, Poles, Sample, discrete};
 use crate::ScalarKind;
 
-/// Something that follows a flight, as [`Deviations::follow`](super::Deviations::follow) does where all of it is there.
+/// An estimator that follows a flight in progress, as [`Deviations::follow`](super::Deviations::follow) does for a
+/// complete one.
 pub trait Follow: Debug {
-    /// Says how long an interval usually is, s.
+    /// Sets the usual length of an interval, s.
     fn set_usual(&mut self, usual: f64);
 
-    /// Takes in a sample: deviations from the steady flight, of the outputs in their order.
+    /// Processes a sample: deviations from the steady flight, of the outputs in their order.
     ///
     /// # Errors
-    /// As the estimator has it, which is as before.
+    /// The error of the estimator, which remains as before.
     fn take(&mut self, sample: &Sample) -> Result<(), uav::Error>;
 
-    /// Deviations α, q, V, θ after the last sample.
+    /// The deviations of α, q, V, θ after the last sample.
     fn estimate(&self) -> SVector<f64, 4>;
+
+    /// The doubts about the estimate; `None` while there is none.
+    fn health(&self) -> Option<Health>;
 }
 
-/// The estimator that is chosen, of these outputs of a model: at most three for an observer. Which interval is usual,
-/// samples tell.
+/// Builds the chosen estimator for the given outputs of a model, at most three for an observer. The usual interval is
+/// set later, from the samples.
 ///
 /// # Errors
-/// Why there is none.
+/// Why it cannot be built.
 pub fn build(
     model: &Model,
     outputs: &[usize],
@@ -74,6 +79,10 @@ impl<T: Scalar> Follow for Filter<T> {
     fn estimate(&self) -> SVector<f64, 4> {
         self.filter().estimate()
     }
+
+    fn health(&self) -> Option<Health> {
+        Some(Self::health(self))
+    }
 }
 
 impl<T: Scalar> Follow for Augmented<T> {
@@ -88,9 +97,13 @@ impl<T: Scalar> Follow for Augmented<T> {
     fn estimate(&self) -> SVector<f64, 4> {
         self.filter().estimate().fixed_rows::<4>(0).into()
     }
+
+    fn health(&self) -> Option<Health> {
+        Some(Self::health(self))
+    }
 }
 
-/// An observer whose gain waits for the usual interval.
+/// An observer whose gain is computed once the usual interval is known.
 #[derive(Debug)]
 struct Observer<T: Scalar, const P: usize> {
     dynamics: Dynamics,
@@ -113,7 +126,7 @@ impl<T: Scalar, const P: usize> Observer<T, P> {
         }
     }
 
-    /// One for the usual interval, that begins at the sample before.
+    /// An observer for the usual interval, which begins at the previous sample.
     fn begin(&self) -> Result<Box<FlightObserver<T, P, KEPT>>, uav::Error> {
         let poles = discrete(self.poles, self.usual);
         let mut observer =
@@ -147,5 +160,9 @@ impl<T: Scalar, const P: usize> Follow for Observer<T, P> {
 
     fn estimate(&self) -> SVector<f64, 4> {
         self.running.as_ref().map_or_else(SVector::zeros, |observer| observer.estimate())
+    }
+
+    fn health(&self) -> Option<Health> {
+        self.running.as_ref().map(|observer| observer.health())
     }
 }

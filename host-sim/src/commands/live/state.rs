@@ -1,4 +1,4 @@
-//! What there is to see, in bounded memory however long the stream.
+//! The state that is shown, in bounded memory however long the stream.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -20,61 +20,61 @@ use crate::figure::Series;
 use crate::system::{Answer, Online, Outcome, Panel, Plan};
 use crate::table::FARTHEST_POSITION;
 
-/// Points of a path on the map.
+/// The maximum number of points of a path on the map.
 const POINTS: usize = 4096;
 
 /// A path on the map, m.
 pub(super) type Path = Thinned<[f64; 2]>;
 
-/// All that is shown.
+/// The complete state that is shown.
 #[derive(Debug, Clone)]
 pub(super) struct State {
     pub(super) system: &'static str,
     pub(super) panels: &'static [Panel],
-    /// Whether the stream is no telemetry.
+    /// Whether the estimator decodes the stream itself, which is then not telemetry.
     hears_bytes: bool,
     pub(super) counts: Counts,
-    /// Those that say who they are, by number, and which of them is shown in detail.
+    /// The devices that identify themselves, by number, and the one of them that is shown in detail.
     pub(super) devices: BTreeMap<u32, Row>,
     pub(super) shown: Option<u32>,
-    /// Those together that do not say who they are, if they are not shown in detail.
+    /// The row of all anonymous senders together, if they are not shown in detail.
     pub(super) unnamed: Option<Row>,
-    /// Frames of devices that were too many.
+    /// The number of frames of devices beyond the maximum.
     pub(super) beyond: u64,
-    /// Whether nothing is kept that is drawn.
+    /// Whether nothing is kept for figures.
     is_brief: bool,
-    /// Datagrams of a second sender, which nobody looked at.
+    /// The number of ignored datagrams from a second sender.
     pub(super) ignored: Arc<AtomicU64>,
-    /// The last time of the sender's clock, µs.
+    /// The latest time of the sender's clock, in microseconds.
     pub(super) time_us: Option<u64>,
     pub(super) health: Option<Health>,
-    /// Where the estimator is, m, …
+    /// The position estimate (m).
     pub(super) position: Option<[f64; 3]>,
-    /// … and where that is on the map, m.
+    /// The position estimate on the map (m).
     pub(super) place: Option<[f64; 2]>,
     pub(super) path_length_m: Option<f64>,
     pub(super) facts: Vec<(String, String)>,
     assumptions: Vec<String>,
     suspicions: Vec<String>,
     pub(super) map: Vec<Series>,
-    /// By the estimator here.
+    /// The path estimated here.
     pub(super) path: Path,
-    /// By the sender's own.
+    /// The path estimated by the sender.
     pub(super) senders_path: Path,
     pub(super) footprints: Path,
-    /// Where path losses were measured.
+    /// The positions at which path losses were measured.
     pub(super) flown: Path,
     pub(super) inertial: Window<Inertial>,
-    /// Anchors, ranges, and whether they were refused.
+    /// The anchors, ranges, and whether they were refused.
     pub(super) ranges: Window<(u16, f32, bool)>,
     pub(super) losses: Window<f32>,
     pub(super) states: Window<[f64; 4]>,
     pub(super) senders_states: Window<[f64; 4]>,
-    /// Where the sender's first place on earth is, and how east, north and up point there.
+    /// The sender's first position on earth, with the rotation to east, north and up there.
     origin: Option<(Vector3<f64>, Matrix3<f64>)>,
 }
 
-/// What an IMU said, and whether the foot stood.
+/// A sample of an IMU, and whether the foot was stationary.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Inertial {
     pub(super) force: [f32; 3],
@@ -83,7 +83,7 @@ pub(super) struct Inertial {
 }
 
 impl State {
-    /// Before anything has come.
+    /// The state before anything has arrived.
     pub(super) fn new(following: &Following) -> Self {
         let plan = following.plan.as_deref();
         let path = Path::new(POINTS);
@@ -120,12 +120,12 @@ impl State {
         }
     }
 
-    /// Of a device that is not shown in detail.
+    /// The state of a device that is not shown in detail.
     pub(super) fn brief() -> Self {
         Self { is_brief: true, ..Self::new(&Following::NONE) }
     }
 
-    /// So many more bytes were decoded; all frames together came to this, of which so many were left out.
+    /// Adds decoded bytes and sets the counters of all frames so far, of which `left_out` were left out.
     pub(super) fn count(
         &mut self,
         bytes: usize,
@@ -138,7 +138,7 @@ impl State {
             Counts { bytes, received, torn, corrupt, unknown, lost, left_out, ..self.counts };
     }
 
-    /// The sender has begun anew: what was drawn is no more.
+    /// Clears the figures after the sender has restarted.
     pub(super) fn restart(&mut self) {
         let path = Path::new(POINTS);
         self.counts.restarts += 1;
@@ -155,7 +155,7 @@ impl State {
         self.origin = None;
     }
 
-    /// A measurement, and what the estimator did with it.
+    /// Adds a measurement with the estimator's outcome.
     pub(super) fn measure(
         &mut self,
         time_us: u64,
@@ -177,7 +177,7 @@ impl State {
             Message::Range(Range { anchor, range, .. }) => {
                 self.ranges.push(time_us, (anchor, range, refused));
             }
-            // What else was refused would only spoil the drawing.
+            // Other refused measurements would only clutter the figures.
             _ if refused => return,
             Message::Imu(Imu { specific_force: force, angular_rate: rate, .. }) => {
                 let is_still = estimator.is_some_and(Online::is_still);
@@ -207,15 +207,17 @@ impl State {
         (self.position, self.place) = (position, place);
     }
 
-    /// How the estimator is doing.
+    /// Updates the state from the estimator.
     pub(super) fn show(&mut self, estimator: &dyn Online) {
         self.move_to(Some(estimator));
         self.path_length_m = estimator.path_length_m();
         self.facts = estimator.facts();
+        let health = estimator.health().map(|health| ("health".to_owned(), health.to_string()));
+        self.facts.extend(health);
         self.suspicions = estimator.warnings();
     }
 
-    /// What the sender says of itself.
+    /// Adds a message about the sender itself.
     pub(super) fn tell(&mut self, message: &Message) {
         if self.is_brief {
             return;
@@ -242,13 +244,13 @@ impl State {
                 self.health = Some(health);
                 true
             }
-            // A kind that this program does not draw.
+            // A kind of message that is not drawn.
             _ => true,
         };
         self.counts.refused += u64::from(!believed);
     }
 
-    /// East and north of the first place on earth, m.
+    /// The position relative to the first one on earth, as east and north (m).
     fn near(&mut self, position: [f64; 3]) -> [f64; 2] {
         let position = Vector3::from(position);
         if !position.iter().all(|coordinate| coordinate.abs() <= FARTHEST_POSITION) {
@@ -260,7 +262,7 @@ impl State {
         [near.x, near.y]
     }
 
-    /// What a user should know.
+    /// Warnings for the user.
     pub(super) fn warnings(&self) -> Vec<String> {
         let restarts = self.counts.restarts;
         let anew = (restarts > 0).then(|| {
@@ -290,7 +292,7 @@ impl State {
         }
     }
 
-    /// What came of it.
+    /// The report at the end of the stream.
     pub(super) fn report(&self, source: String, recording: PathBuf) -> Report {
         Report {
             system: self.system,
@@ -311,7 +313,7 @@ impl State {
     }
 }
 
-/// Draws a path on, unless nobody can be there.
+/// Appends a point to a path, unless it is implausibly far away.
 fn push(path: &mut Path, place: [f64; 2]) -> bool {
     let believed = place.iter().all(|coordinate| coordinate.abs() <= FARTHEST_POSITION);
     if believed {

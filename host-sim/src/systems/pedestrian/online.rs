@@ -1,4 +1,4 @@
-//! A walk, followed as firmware follows it.
+//! Follows a live walk in the same way as firmware does.
 
 use kestirim_imu_calibration::Calibration;
 use kestirim_replay::pedestrian::{Follow, Options, build};
@@ -6,13 +6,13 @@ use kestirim_telemetry::{Imu, Message};
 
 use super::Sample;
 use crate::Error;
-use crate::system::{Online, Outcome, Plan};
+use crate::system::{Health, Online, Outcome, Plan};
 
-/// What is known beforehand.
+/// The settings and calibration of a walk.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Walking {
     pub(super) options: Options,
-    /// What the IMU measures wrong, if that is known.
+    /// The calibration of the IMU, if there is one.
     pub(super) calibration: Option<Calibration<f64>>,
 }
 
@@ -55,6 +55,10 @@ impl Online for Walker {
 
     fn path_length_m(&self) -> Option<f64> {
         Some(self.0.path_length_m())
+    }
+
+    fn health(&self) -> Option<Health> {
+        self.0.health()
     }
 
     fn facts(&self) -> Vec<(String, String)> {

@@ -1,4 +1,4 @@
-//! A tag, followed as firmware follows it.
+//! Follows a live tag in the same way as firmware does.
 
 use kestirim_replay::robot::{
     self, Anchors, Dimensions, Event, Follow, HeightSearch, Inertial, Setup, build,
@@ -12,23 +12,23 @@ use super::simulate::scenario::office_anchors;
 use super::track::refused;
 use crate::Error;
 use crate::figure::{Colour, Series};
-use crate::system::{Files, Online, Outcome, Plan, Settings};
+use crate::system::{Files, Health, Online, Outcome, Plan, Settings};
 
-/// What is known beforehand.
+/// The anchors and settings of a live tag.
 #[derive(Debug)]
 pub(super) struct Tag {
     anchors: Anchors,
     setup: Setup,
-    /// Whether nobody says how high the tag is.
+    /// Whether the height of the tag is not given.
     is_height_missing: bool,
     assumptions: Vec<String>,
 }
 
 impl Tag {
-    /// Reads what the files say.
+    /// Reads the files.
     ///
     /// # Errors
-    /// Whatever is wrong with the files.
+    /// Errors in the files.
     pub(super) fn read(settings: &Settings, files: &Files) -> Result<Self, Error> {
         let mut assumptions = Vec::new();
         let anchors = if let Some(path) = files.one("anchors") {
@@ -76,21 +76,21 @@ impl Plan for Tag {
     }
 }
 
-/// A time that no clock shows, µs: in snapshots, of what has not begun.
+/// A time that no clock shows (µs): in snapshots, it marks an estimator that has not started.
 const NOT_BEGUN: u64 = u64::MAX;
 
-/// A tracker. Anchors are numbered from 0, in the order of their file.
+/// A live tracker. Anchors are numbered from 0, in the order of their file.
 #[derive(Debug)]
 struct Followed {
     tracker: Box<dyn Follow>,
     setup: Setup,
-    /// Looks for the height until it is found.
+    /// The search for the height, until it is found.
     finder: Option<Box<HeightSearch>>,
     begun_us: Option<u64>,
 }
 
 impl Followed {
-    /// Once the ranges tell the height, the tag is followed anew at that height.
+    /// Continues the search for the height. Once the ranges determine it, tracking restarts at that height.
     fn look_for_height(&mut self, time_us: u64, range: &robot::Range) {
         let Some(finder) = &mut self.finder else { return };
         if !finder.take(time_us, range) {
@@ -137,6 +137,10 @@ impl Online for Followed {
 
     fn sigma_m(&self) -> Option<f64> {
         self.tracker.spread().map(|[xx, _, yy]| (0.5 * (xx + yy)).sqrt())
+    }
+
+    fn health(&self) -> Option<Health> {
+        self.position().map(|_| self.tracker.health())
     }
 
     fn snapshot(&self) -> Result<Vec<u8>, String> {

@@ -1,4 +1,4 @@
-//! A flight while it comes: what is sent, and the estimator that is set.
+//! Follows a live flight with the selected estimator.
 
 use kestirim_replay::uav::{
     Error as Refusal, EstimatorKind, Follow, Model, Options, Sample, build,
@@ -10,20 +10,20 @@ use super::recording::model;
 use super::settings;
 use super::track::refused;
 use crate::Error;
-use crate::system::{Files, Online, Outcome, Plan, Settings};
+use crate::system::{Files, Health, Online, Outcome, Plan, Settings};
 
-/// What a [`Flight`] measures, by the names of a model's outputs.
+/// The quantities in a [`Flight`] message, by the names of a model's outputs.
 const MEASURED: [&str; 3] = ["q", "V", "theta"];
-/// An interval this much shorter than the usual one is the usual one: before, something was lost.
+/// The ratio to the usual interval below which a shorter one becomes the usual one: samples were lost before.
 const SHORTER: f64 = 0.75;
 
-/// The model, what is taken from what is sent, and the estimator.
+/// The model, the measurements used, and the settings of the estimator.
 #[derive(Debug, Clone)]
 pub(super) struct Flying {
     model: Model,
-    /// Of the model.
+    /// The indices of the model's outputs that are used.
     outputs: Vec<usize>,
-    /// Where each stands in a [`Flight`].
+    /// The index of each output in a [`Flight`] message.
     places: Vec<usize>,
     origin: ([f64; 4], [f64; 2]),
     absolute: bool,
@@ -31,10 +31,10 @@ pub(super) struct Flying {
 }
 
 impl Flying {
-    /// Of a model that is named or in a file.
+    /// A plan with a named model or one from a file.
     ///
     /// # Errors
-    /// [`Error::Usage`] without a model, and whatever is wrong with it.
+    /// [`Error::Usage`] without a model, and errors in the model.
     pub(super) fn new(settings: &Settings, files: &Files) -> Result<Self, Error> {
         let file = files.one("model");
         if file.is_none() && !settings.is_given("model") {
@@ -65,7 +65,7 @@ impl Flying {
         Ok(flying)
     }
 
-    /// A flight in deviations; none if a number cannot have been measured.
+    /// Converts a message to deviations; `None` if a number is implausible.
     fn sample(&self, flight: &Flight) -> Option<Sample> {
         let (state, input) = &self.origin;
         let measured = self.outputs.iter().zip(&self.places).map(|(&output, &place)| {
@@ -94,7 +94,7 @@ impl Plan for Flying {
     }
 }
 
-/// The estimator on its way.
+/// The live estimator.
 #[derive(Debug)]
 struct Aeroplane {
     plan: Flying,
@@ -132,5 +132,9 @@ impl Online for Aeroplane {
         self.last_us?;
         let state: [f64; 4] = self.estimator.estimate().into();
         Some(std::array::from_fn(|i| state[i] + self.plan.origin.0[i]))
+    }
+
+    fn health(&self) -> Option<Health> {
+        self.last_us.and_then(|_| self.estimator.health())
     }
 }

@@ -1,4 +1,4 @@
-//! What is done with observations and products.
+//! Combines observations and orbits into solutions.
 
 use embedded_io::{Read, ReadReady, Write};
 use heapless::Vec;
@@ -6,85 +6,88 @@ use kestirim_gnss_ppp::GpsTime;
 use kestirim_ppp_filter::{Lean, PppFilter, SatelliteObservation, Solution, states};
 use kestirim_telemetry::{GlobalPosition, Health, Transmitter};
 
-use crate::lines::Lines;
-use crate::observations::{Observations, Observed, Receiver};
-use crate::products::{Products, Unusable};
+use crate::observations::{Message, Observations, Observed, Receiver};
+use crate::source::{Source, Unusable, sighting};
 use crate::{Error, site};
 
-/// Satellites that are used at a time.
+/// The number of satellites that are used at a time.
 pub const VISIBLE: usize = 12;
-/// The filter's states.
+/// The number of the filter's states.
 pub const STATES: usize = states(VISIBLE);
 
-/// A satellite that was observed and does not serve.
+/// A satellite that was observed but not used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Unused {
-    /// Its number.
+    /// The number of the satellite.
     pub satellite: u8,
-    /// Why.
+    /// The reason.
     pub reason: Unusable,
 }
 
-/// What became of an epoch.
+/// The result of an epoch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Epoch {
-    /// Where the receiver is, or why nobody knows.
+    /// The position of the receiver, or the reason why there is none.
     pub solution: Result<Solution<STATES>, kestirim_ppp_filter::Error>,
-    /// What did not serve.
+    /// The satellites that were not used.
     pub unused: Vec<Unused, 32>,
 }
 
-/// A receiver that finds its place.
+/// A receiver that determines its position.
 #[derive(Debug)]
-pub struct App<R, M, W> {
+pub struct App<R, S, W> {
     receiver: Receiver<R>,
-    modem: Lines<M>,
+    source: S,
     telemetry: Transmitter<W>,
-    products: Products,
     filter: PppFilter<STATES, Lean>,
+    observed: Option<GpsTime>,
     solved: Option<GpsTime>,
     accepted: u32,
     rejected: u32,
-    malformed: u32,
 }
 
-impl<R, M, W> App<R, M, W>
+impl<R, S, W> App<R, S, W>
 where
     R: Read + ReadReady,
-    M: Read + ReadReady,
+    S: Source,
     W: Write,
 {
-    /// With a u-blox receiver of two carriers that sends UBX-RXM-RAWX, a modem that hands on products before they
-    /// are needed, and a serial port for telemetry.
-    pub fn new(receiver: R, modem: M, telemetry: W) -> Self {
+    /// Creates the application from a u-blox receiver of two carriers that sends UBX-RXM-RAWX, and UBX-RXM-SFRBX if
+    /// that is the source of orbits; and a serial port for telemetry.
+    pub fn new(receiver: R, source: S, telemetry: W) -> Self {
         Self {
             receiver: Receiver::new(receiver),
-            modem: Lines::new(modem),
+            source,
             telemetry: Transmitter::new(telemetry),
-            products: Products::new(),
-            filter: PppFilter::new(site::config()),
+            filter: PppFilter::new(S::config()),
+            observed: None,
             solved: None,
             accepted: 0,
             rejected: 0,
-            malformed: 0,
         }
     }
 
-    /// Reads what both have sent up to the next epoch, and takes that in. `time_us` is now (µs since any moment).
+    /// Reads the data of both ports up to the next epoch, and updates the filter. `time_us` is the current time (µs
+    /// since any moment).
     ///
     /// # Errors
-    /// A port's.
+    /// If a port fails.
     pub fn poll(&mut self, time_us: u64) -> Result<Option<Epoch>, Error> {
-        let (products, malformed) = (&mut self.products, &mut self.malformed);
-        let read = |line: &str| {
-            let refused = products.read(line).is_err();
-            *malformed = malformed.saturating_add(refused.into());
+        self.source.poll()?;
+        let observations = loop {
+            match self.receiver.message().map_err(|_| Error::Receiver)? {
+                Some(Message::Epoch(observations)) => break observations,
+                Some(Message::Subframe { satellite, subframe }) => {
+                    // Before the first epoch the week is unknown; each subframe is repeated within half a minute.
+                    if let Some(time) = self.observed {
+                        self.source.take(satellite, subframe, time);
+                    }
+                }
+                None => return Ok(None),
+            }
         };
-        self.modem.each(read).map_err(|_| Error::Modem)?;
-        let Some(observations) = self.receiver.epoch().map_err(|_| Error::Receiver)? else {
-            return Ok(None);
-        };
+        self.observed = Some(observations.time);
         let epoch = self.take_in(&observations);
         if let Ok(solution) = &epoch.solution {
             let position = GlobalPosition {
@@ -95,7 +98,7 @@ where
             self.telemetry.send(position).map_err(|_| Error::Telemetry)?;
         }
         let Self { accepted, rejected, .. } = *self;
-        let failed = self.receiver.damaged().saturating_add(self.malformed);
+        let failed = self.receiver.damaged().saturating_add(self.source.damaged());
         let health = Health { time_us, accepted, rejected, failed };
         self.telemetry.send(health).map_err(|_| Error::Telemetry)?;
         Ok(Some(epoch))
@@ -106,10 +109,10 @@ where
         let mut sightings: Vec<SatelliteObservation<'static>, VISIBLE> = Vec::new();
         let mut unused = Vec::new();
         for observed in &observations.satellites {
-            let sighting = self.products.sighting(time, observed, self.lost(time, observed));
+            let lost = self.lost(time, observed);
             let room = |sighting| sightings.push(sighting).map_err(|_| Unusable::NoRoom);
-            if let Err(reason) = sighting.and_then(room) {
-                // As many as there are observed at most.
+            if let Err(reason) = sighting(&self.source, time, observed, lost).and_then(room) {
+                // There is room for as many satellites as can be observed.
                 let _ = unused.push(Unused { satellite: observed.satellite, reason });
             }
         }

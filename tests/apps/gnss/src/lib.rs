@@ -1,18 +1,27 @@
-//! A receiver of carrier phases that finds its place to centimetres, as one would write it: a u-blox module tells
-//! what it observes on L1 and L2 (UBX-RXM-RAWX), a modem hands on lines of precise orbits and clocks as services
-//! publish them (SP3 and RINEX clock files), a filter finds the place, and frames of telemetry tell a host.
+//! A carrier-phase receiver that determines its position, as an example application: a u-blox module provides
+//! observations on L1 and L2 (UBX-RXM-RAWX), a filter estimates the position, and telemetry frames report it to a host.
+//! Orbits and clocks come from a [`Source`]:
 //!
-//! Both are behind `embedded-io`. [`App::poll`] is the loop's body; [`site`] is what is to be changed.
+//! - [`Products`]: a modem delivers lines of precise orbits and clocks as services publish them (SP3 and RINEX clock
+//!   files): centimetres.
+//! - [`Broadcasts`]: the satellites themselves, whose messages the module passes on (UBX-RXM-SFRBX): metres, without
+//!   further hardware.
+//!
+//! Ports are accessed through `embedded-io`. [`App::poll`] is the body of the loop; [`site`] is the part to adapt.
 #![no_std]
 
 mod app;
+mod broadcasts;
 mod calendar;
 mod error;
 mod lines;
 mod observations;
 mod products;
 pub mod site;
+mod source;
 
 pub use app::{App, Epoch, STATES, Unused, VISIBLE};
+pub use broadcasts::Broadcasts;
 pub use error::Error;
-pub use products::Unusable;
+pub use products::Products;
+pub use source::{Source, Unusable};

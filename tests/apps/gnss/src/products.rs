@@ -1,42 +1,28 @@
 //! Precise orbits and clocks, as lines of the files that services publish: SP3 and RINEX clock.
 
+use embedded_io::{Read, ReadReady};
 use heapless::{String, Vec};
+use kestirim_gnss_message::gps::Subframe;
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
-use kestirim_gnss_ppp::{
-    Carriers, Clock, ClockSample, GpsTime, Orbit, OrbitSample, SatelliteState,
-};
-use kestirim_ppp_filter::SatelliteObservation;
+use kestirim_gnss_ppp::{Clock, ClockSample, GpsTime, Orbit, OrbitSample, Pattern, SatelliteState};
+use kestirim_ppp_filter::{Config, Lean};
 use nalgebra::Vector3;
 
-use crate::calendar;
-use crate::observations::Observed;
-use crate::site;
+use crate::lines::Lines;
+use crate::source::{Source, Unusable};
+use crate::{Error, calendar, site};
 
-/// What an orbit is interpolated from: each sample must come before the fifth-next is reached.
+/// The number of samples from which an orbit is interpolated (each sample must arrive before the fifth-next is
+/// reached), and that for a clock.
 const ORBIT_SAMPLES: usize = 11;
 const CLOCK_SAMPLES: usize = 4;
-/// Clocks are bridged over the interval of the coarsest products, s.
+/// The longest gap between clock samples that is interpolated over, s: the interval of the coarsest products.
 const LONGEST_CLOCK_GAP: f64 = 900.0;
-/// A bias as large as this stands for one that is not known, s.
+/// The bias from which a clock counts as unknown, s.
 const NO_BIAS: f64 = 0.9;
 const SATELLITES: usize = 32;
 
-/// Why a satellite that was observed does not serve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum Unusable {
-    /// A code or a phase is missing, or not yet whole.
-    Incomplete,
-    /// There is no orbit at the time.
-    NoOrbit,
-    /// There is no clock at the time.
-    NoClock,
-    /// More satellites are in view than the filter has room for.
-    NoRoom,
-}
-
-/// A line cannot be read.
+/// The error for a line that cannot be parsed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Malformed;
 
@@ -50,23 +36,73 @@ impl Satellite {
     const NONE: Self = Self { orbit: Vec::new(), clock: Vec::new() };
 }
 
-/// The products around now.
+/// The products around the current time, from a modem that delivers lines of both kinds of files.
 #[derive(Debug)]
-pub(crate) struct Products {
-    /// The midnight before the first line with a time: from it all samples count.
+pub struct Products<M> {
+    modem: Lines<M>,
+    tables: Tables,
+    damaged: u32,
+}
+
+impl<M: Read + ReadReady> Products<M> {
+    /// Creates the source from a modem that delivers products before they are needed.
+    pub const fn new(modem: M) -> Self {
+        Self { modem: Lines::new(modem), tables: Tables::new(), damaged: 0 }
+    }
+}
+
+impl<M: Read + ReadReady> Source for Products<M> {
+    fn poll(&mut self) -> Result<(), Error> {
+        let (tables, damaged) = (&mut self.tables, &mut self.damaged);
+        let read = |line: &str| {
+            let refused = tables.read(line).is_err();
+            *damaged = damaged.saturating_add(refused.into());
+        };
+        self.modem.each(read).map_err(|_| Error::Modem)
+    }
+
+    /// Ignores broadcast subframes: products are better.
+    fn take(&mut self, _: u8, _: Subframe, _: GpsTime) {}
+
+    fn state(
+        &self,
+        satellite: u8,
+        received: GpsTime,
+        code: f64,
+    ) -> Result<SatelliteState, Unusable> {
+        self.tables.state(satellite, received, code)
+    }
+
+    fn antenna(&self) -> Option<[Pattern<'static>; 2]> {
+        site::satellite_antenna()
+    }
+
+    fn config() -> Config<Lean> {
+        site::config()
+    }
+
+    fn damaged(&self) -> u32 {
+        self.damaged
+    }
+}
+
+/// Samples of orbits and clocks.
+#[derive(Debug)]
+struct Tables {
+    /// The midnight before the first line with a time, from which all samples count.
     reference: Option<GpsTime>,
-    /// Of the positions that follow.
+    /// The time of the positions that follow.
     time: Option<GpsTime>,
     satellites: [Satellite; SATELLITES],
 }
 
-impl Products {
-    pub(crate) const fn new() -> Self {
+impl Tables {
+    const fn new() -> Self {
         Self { reference: None, time: None, satellites: [const { Satellite::NONE }; SATELLITES] }
     }
 
-    /// Takes in a line of either format; lines that tell no time, position or clock of GPS say nothing.
-    pub(crate) fn read(&mut self, line: &str) -> Result<(), Malformed> {
+    /// Takes a line of either format; lines without a time, a position or a GPS clock are ignored.
+    fn read(&mut self, line: &str) -> Result<(), Malformed> {
         let done = match line.as_bytes() {
             [b'*', ..] => self.epoch(line),
             [b'P', b'G', ..] => self.position(line),
@@ -78,13 +114,13 @@ impl Products {
     }
 
     fn epoch(&mut self, line: &str) -> Option<()> {
-        // Positions after a time that cannot be read belong to no other.
+        // Positions after an unreadable time must not be assigned to another.
         self.time = None;
         self.time = Some(calendar::date(&mut line.split_whitespace().skip(1))?);
         Some(())
     }
 
-    /// Columns 5 to 46 are x, y and z in km; an M in column 79 is a manoeuvre between the samples.
+    /// Takes a position: columns 5 to 46 are x, y and z in km; an M in column 79 is a manoeuvre between the samples.
     fn position(&mut self, line: &str) -> Option<()> {
         let time = self.time?;
         let column = |start: usize| {
@@ -94,7 +130,7 @@ impl Products {
         let moved = line.as_bytes().get(78) == Some(&b'M');
         let reference = self.reference(time);
         let satellite = self.satellites.get_mut(index(line.get(2..4)?)?)?;
-        // Zeros stand for a position that is not known.
+        // Zeros stand for an unknown position.
         if !moved && position != Vector3::zeros() {
             let sample = OrbitSample::from_ecef(reference, time, &position);
             append(&mut satellite.orbit, sample, |sample| sample.second);
@@ -102,7 +138,7 @@ impl Products {
         Some(())
     }
 
-    /// `AS Gnn`, the time, how many numbers follow, and the first of them: the bias, s.
+    /// Takes a clock: `AS Gnn`, the time, the count of numbers that follow, and the first of them: the bias, s.
     fn clock(&mut self, line: &str) -> Option<()> {
         let mut fields = line.split_whitespace().skip(1);
         let satellite = index(fields.next()?.strip_prefix('G')?)?;
@@ -120,54 +156,42 @@ impl Products {
         *self.reference.get_or_insert(GpsTime::new(time.day(), 0.0))
     }
 
-    /// An observed satellite with its state when it sent what was received at `time`.
-    pub(crate) fn sighting(
+    fn state(
         &self,
-        time: GpsTime,
-        observed: &Observed,
-        lock_lost: bool,
-    ) -> Result<SatelliteObservation<'static>, Unusable> {
-        let ([Some(first), Some(second)], [Some(l1), Some(l2)]) = (observed.code, observed.phase)
-        else {
-            return Err(Unusable::Incomplete);
-        };
+        satellite: u8,
+        received: GpsTime,
+        code: f64,
+    ) -> Result<SatelliteState, Unusable> {
         let reference = self.reference.ok_or(Unusable::NoOrbit)?;
-        let satellite = usize::from(observed.satellite).checked_sub(1);
+        let satellite = usize::from(satellite).checked_sub(1);
         let satellite =
             satellite.and_then(|index| self.satellites.get(index)).ok_or(Unusable::NoOrbit)?;
         let orbit = Orbit { reference, samples: &satellite.orbit };
         let clock = Clock { reference, samples: &satellite.clock, longest_gap: LONGEST_CLOCK_GAP };
-        // By the satellite's own clock; it is off by less than a millisecond, in which it loses nothing.
-        let sent = time.plus(-first / SPEED_OF_LIGHT);
+        // By the satellite's own clock, which is off by less than a millisecond; the clock does not change noticeably
+        // within that.
+        let sent = received.plus(-code / SPEED_OF_LIGHT);
         let missing =
             || if orbit.at(sent).is_none() { Unusable::NoOrbit } else { Unusable::NoClock };
         let clock = clock.at(sent).ok_or_else(missing)?;
         let orbit = orbit.at(sent.plus(-clock.bias)).ok_or(Unusable::NoOrbit)?;
-        Ok(SatelliteObservation {
-            satellite: observed.satellite,
-            carriers: Carriers::L1L2,
-            code: [first, second],
-            phase: [l1, l2],
-            lock_lost,
-            state: SatelliteState {
-                position: orbit.position,
-                velocity: orbit.velocity,
-                clock: clock.bias,
-                clock_interval: clock.interval,
-                clock_distance: clock.distance,
-                accuracy: 0.0,
-            },
-            antenna: site::satellite_antenna(),
+        Ok(SatelliteState {
+            position: orbit.position,
+            velocity: orbit.velocity,
+            clock: clock.bias,
+            clock_interval: clock.interval,
+            clock_distance: clock.distance,
+            accuracy: 0.0,
         })
     }
 }
 
-/// Where a satellite's number puts it.
+/// The index of a satellite's number.
 fn index(number: &str) -> Option<usize> {
     number.trim_ascii().parse::<usize>().ok()?.checked_sub(1)
 }
 
-/// A number whose exponent may be marked as Fortran does, with D.
+/// Parses a number whose exponent may be marked with D, as in Fortran.
 fn number(text: &str) -> Option<f64> {
     let mut marked: String<32> = String::new();
     for letter in text.chars() {
@@ -176,7 +200,7 @@ fn number(text: &str) -> Option<f64> {
     marked.parse().ok()
 }
 
-/// Adds a sample that is later than all others; the oldest makes room.
+/// Appends a sample if it is later than all others, dropping the oldest when full.
 fn append<T, const N: usize>(samples: &mut Vec<T, N>, sample: T, second: impl Fn(&T) -> f64) {
     if samples.last().is_some_and(|last| second(last) >= second(&sample)) {
         return;
@@ -185,7 +209,7 @@ fn append<T, const N: usize>(samples: &mut Vec<T, N>, sample: T, second: impl Fn
         samples.rotate_left(1);
         samples.pop();
     }
-    // There is room now.
+    // Cannot fail: there is room now.
     let _ = samples.push(sample);
 }
 
@@ -198,8 +222,8 @@ mod tests {
     const MIDDAY: GpsTime = GpsTime::new_in_day(59_025, 43_200.0);
 
     /// Positions every 15 minutes from 10:45 on, and clocks about midday.
-    fn products(samples: u32) -> Products {
-        let mut products = Products::new();
+    fn products(samples: u32) -> Tables {
+        let mut products = Tables::new();
         let mut read = |line: &str| assert_eq!(products.read(line), Ok(()), "{line}");
         read("#cP2020  6 25 10 45  0.00000000      11 ORBIT IGS14 FIT  ME");
         for sample in 0..samples {
@@ -218,40 +242,31 @@ mod tests {
         products
     }
 
-    fn observed(satellite: u8) -> Observed {
-        let (code, phase) = ([Some(20_986e3); 2], [Some(1e8); 2]);
-        Observed { satellite, code, phase, lock_ms: [Observed::LONGEST_LOCK; 2] }
-    }
+    const CODE: f64 = 20_986e3;
 
     #[test]
     fn a_satellite_is_where_it_sent() {
-        let sighting = products(11).sighting(MIDDAY, &observed(5), true).expect("a sighting");
-        let state = sighting.state;
-        assert!(sighting.lock_lost && (state.position.norm() - 26_578_817.0).abs() < 10.0);
+        let state = products(11).state(5, MIDDAY, CODE).expect("a state");
+        assert!((state.position.norm() - 26_578_817.0).abs() < 10.0);
         assert!((state.clock - 2e-5).abs() < 1e-7 && state.clock_interval == 30.0);
-        // 11 samples stay when more come, and those that came already say nothing.
+        // 11 samples are kept when more arrive, and repeated ones are ignored.
         let mut products = products(13);
         let again = "PG05      1.000000      1.000000      1.000000";
         assert_eq!((products.read(again), products.satellites[4].orbit.len()), (Ok(()), 11));
-        let later = products.sighting(MIDDAY, &observed(5), false).expect("a sighting").state;
+        let later = products.state(5, MIDDAY, CODE).expect("a state");
         assert!((later.position - state.position).norm() < 0.1);
     }
 
     #[test]
     fn what_is_missing_is_told() {
         let products = products(11);
-        let refused = |time, observed| products.sighting(time, &observed, false).err();
-        let incomplete = Observed { phase: [Some(1e8), None], ..observed(5) };
-        assert_eq!(refused(MIDDAY, incomplete), Some(Unusable::Incomplete));
-        assert_eq!(refused(MIDDAY.plus(60.0), observed(5)), Some(Unusable::NoClock));
-        assert_eq!(refused(MIDDAY.plus(9_000.0), observed(5)), Some(Unusable::NoOrbit));
+        let refused = |time, satellite| products.state(satellite, time, CODE).err();
+        assert_eq!(refused(MIDDAY.plus(60.0), 5), Some(Unusable::NoClock));
+        assert_eq!(refused(MIDDAY.plus(9_000.0), 5), Some(Unusable::NoOrbit));
         for unknown in [0, 6, 7, 32, 33, 255] {
-            assert_eq!(refused(MIDDAY, observed(unknown)), Some(Unusable::NoOrbit), "{unknown}");
+            assert_eq!(refused(MIDDAY, unknown), Some(Unusable::NoOrbit), "{unknown}");
         }
-        assert_eq!(
-            Products::new().sighting(MIDDAY, &observed(5), false).err(),
-            Some(Unusable::NoOrbit)
-        );
+        assert_eq!(Tables::new().state(5, MIDDAY, CODE).err(), Some(Unusable::NoOrbit));
     }
 
     #[test]
@@ -265,7 +280,7 @@ mod tests {
             "AS G05  2020 06 25 12 00",
             "AS G05  2020 06 25 12 00  0.000000  1    0.1E",
             "*  2020  6 25",
-            // After a time that cannot be read.
+            // A position after an unreadable time.
             "PG05  10000.000000      0.000000      0.000000",
         ] {
             assert_eq!(products.read(line), Err(Malformed), "{line}");

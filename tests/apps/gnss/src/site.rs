@@ -1,10 +1,10 @@
-//! The receiver, and how it is filtered: what is to be changed first when this is copied.
+//! The receiver and its filter configuration: the part to adapt first when copying this application.
 
 use kestirim_gnss_ppp::{Corrections, OceanLoading, Pattern, Receiver};
 use kestirim_ppp_filter::{Config, Estimator, Lean, Motion};
 
-/// Phase centres of the satellites, as files of the IGS (ANTEX) tell them: nadir angles of 0°, 7° and 14°. Those of
-/// a GPS IIF, here for all.
+/// The phase centres of the satellites, in the form of IGS files (ANTEX): nadir angles of 0°, 7° and 14°. Those of a
+/// GPS IIF are used for all.
 static SATELLITE_ANTENNA: [Pattern<'static>; 2] = {
     const L1: Pattern<'static> = Pattern {
         offset: [0.279, 0.0, 2.3195],
@@ -17,7 +17,7 @@ static SATELLITE_ANTENNA: [Pattern<'static>; 2] = {
     [L1, Pattern { offset: [0.279, 0.0, 2.2895], ..L1 }]
 };
 
-/// Phase centres of the receiver's antenna: zenith angles of 0°, 30°, 60° and 90°, azimuths of 0°, 180° and 360°.
+/// The phase centres of the receiver's antenna: zenith angles of 0°, 30°, 60° and 90°, azimuths of 0°, 180° and 360°.
 static RECEIVER_ANTENNA: [Pattern<'static>; 2] = {
     const L1: Pattern<'static> = Pattern {
         offset: [0.0012, -0.0004, 0.0892],
@@ -33,7 +33,7 @@ static RECEIVER_ANTENNA: [Pattern<'static>; 2] = {
     [L1, Pattern { offset: [0.0, 0.0001, 0.1185], ..L1 }]
 };
 
-/// Tides of the ocean where the receiver stands, as a service (BLQ) tells them.
+/// The ocean loading at the receiver, in the form of a service (BLQ).
 static OCEAN_LOADING: OceanLoading = OceanLoading {
     amplitude: [
         [0.0074, 0.0023, 0.0017, 0.0006, 0.0013, 0.0008, 0.0004, 0.0002, 0.0006, 0.0003, 0.0003],
@@ -47,7 +47,7 @@ static OCEAN_LOADING: OceanLoading = OceanLoading {
     ],
 };
 
-/// What is known of the receiver.
+/// The properties of the receiver.
 pub const fn receiver() -> Receiver<'static> {
     Receiver {
         antenna: Some(RECEIVER_ANTENNA),
@@ -62,13 +62,18 @@ pub const fn receiver() -> Receiver<'static> {
     }
 }
 
-/// What is known of a satellite's antenna.
+/// The properties of a satellite's antenna.
 pub const fn satellite_antenna() -> Option<[Pattern<'static>; 2]> {
     Some(SATELLITE_ANTENNA)
 }
 
-/// A station that stands still; gradients of the troposphere would take the room of two satellites.
+/// The configuration for a static station; tropospheric gradients would take the room of two satellites.
 pub fn config() -> Config<Lean> {
     let config = Config { gradient: 0.0, ..Config::new(Motion::Static) };
     config.with_estimator(Estimator::at_rest())
+}
+
+/// The configuration for the same station with broadcast ephemerides instead of products.
+pub fn without_products() -> Config<Lean> {
+    Config::broadcast(Motion::Static).with_estimator(Estimator::at_rest())
 }

@@ -1,9 +1,10 @@
-//! All modules together, for the host: for a target each is a program.
+//! All modules together, for the host; on a target each one is a program.
 
 pub mod adaptive_kalman;
 pub mod air_to_ground;
 pub mod arithmetic;
 pub mod attitude;
+pub mod gnss_message;
 pub mod gnss_ppp;
 pub mod health;
 pub mod imu_calibration;

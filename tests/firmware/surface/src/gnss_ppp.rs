@@ -1,11 +1,11 @@
-//! Everything of `kestirim-gnss-ppp`.
+//! Calls everything of `kestirim-gnss-ppp`.
 
 use kestirim_gnss_ppp::{
-    Arc, Bodies, BodyAxes, Carriers, Clock, ClockSample, Constellation, Correction, Corrections,
-    Direction, Ephemeris, Geodetic, GpsTime, Klobuchar, OceanLoading, Orbit, OrbitSample, Pattern,
-    Receiver, SatelliteState, Site, SlipLimits, Troposphere, carried_along, eccentricity_clock,
-    gradient_mapping, greenwich_sidereal_time, pole_tide, sagnac, shapiro_delay, solid_tide,
-    wind_up, zenith_hydrostatic, zenith_wet,
+    Arc, Bodies, BodyAxes, Carriers, Clock, ClockReference, ClockSample, Constellation, Correction,
+    Corrections, Direction, Ephemeris, Geodetic, GpsTime, Klobuchar, NavigationMessage,
+    OceanLoading, Orbit, OrbitSample, Pattern, Receiver, SatelliteState, Site, SlipLimits,
+    Troposphere, carried_along, eccentricity_clock, gradient_mapping, greenwich_sidereal_time,
+    pole_tide, sagnac, shapiro_delay, solid_tide, wind_up, zenith_hydrostatic, zenith_wet,
 };
 use nalgebra::Vector3;
 
@@ -38,6 +38,8 @@ fn times() {
     keep(GpsTime::new_in_day(whole(), number()));
     keep(GpsTime::day(time()));
     keep(GpsTime::second(time()));
+    keep(GpsTime::second_of_week(time()));
+    keep(GpsTime::nearest_second_of_week(time(), number()));
     keep(GpsTime::plus(time(), number()));
     keep(GpsTime::since(time(), time()));
     keep(GpsTime::days_since_j2000(time(), number()));
@@ -135,6 +137,11 @@ fn broadcast() {
     }
     let ionosphere = any(Klobuchar { alpha: numbers(), beta: numbers() });
     keep(Klobuchar::delay(&ionosphere, &place(), &direction(), time()));
+    let message = one_of([NavigationMessage::Lnav, NavigationMessage::D1]);
+    let reference: Option<ClockReference> =
+        NavigationMessage::clock_reference(message, carriers(), numbers());
+    keep(reference);
+    keep(NavigationMessage::holds(message));
 }
 
 fn earth() {
@@ -183,7 +190,7 @@ fn signals() {
     keep(Arc::last(&arc));
 }
 
-/// Calls it all.
+/// Calls everything in this module.
 pub fn run() {
     call_each([times, patterns, satellites, broadcast, earth, signals]);
 }

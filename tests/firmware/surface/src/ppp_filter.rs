@@ -1,15 +1,17 @@
-//! Everything of `kestirim-ppp-filter`.
+//! Calls everything of `kestirim-ppp-filter`.
 
 use core::fmt::Debug;
 
+use kestirim_gnss_message::{beidou, galileo, gps};
 use kestirim_gnss_ppp::{
     Carriers, Corrections, GpsTime, Klobuchar, OceanLoading, Pattern, Receiver, SatelliteState,
     SlipLimits,
 };
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_ppp_filter::{
-    AmbiguityFixer, CodeObservation, Config, Deviation, Error, Estimator, Health, Motion,
-    PhaseBias, PppFilter, SatelliteObservation, Solution, Weighting, single_point, states,
+    AmbiguityFixer, Broadcast, CodeObservation, Config, Deviation, Error, Estimator, Health,
+    MessagePart, Motion, PhaseBias, PppFilter, SatelliteObservation, Solution, Weighting,
+    single_point, states,
 };
 use kestirim_robust_kalman::{Decision, Measurement};
 
@@ -47,7 +49,7 @@ fn weighting() {
     keep(Weighting::update(&robust, &mut estimate, slice(&measurements), &mut decisions));
 }
 
-/// Any configuration.
+/// An arbitrary configuration.
 fn config() -> Config {
     let deviation = || any(Deviation { zenith: number(), slant: number() });
     any(Config {
@@ -127,11 +129,35 @@ fn filters<const N: usize, R: Weighting + Debug>(estimator: fn() -> Estimator<R>
     }
 }
 
-/// Calls it all.
+fn broadcast<const N: usize>() {
+    keep(<Broadcast<N> as Default>::default());
+    let mut broadcast = any(Broadcast::<N>::new());
+    for _ in 0..rounds() {
+        let [mut words, mut other]: [[u32; 10]; 2] = [[whole(); 10], [whole(); 10]];
+        words[0] = 0x8b << 22;
+        other[0] = 0b111_0001_0010 << 19;
+        let parts = [
+            gps::Subframe::from_words(&any(words)).map(MessagePart::Gps),
+            beidou::Subframe::from_words(&any(other)).map(MessagePart::BeiDou),
+            galileo::Word::from_page(&any([whole(); 8])).map(MessagePart::Galileo),
+        ];
+        let time = any(GpsTime::new(whole(), number()));
+        if let Some(part) = one_of(parts) {
+            keep(Broadcast::take(&mut broadcast, one_of([1, 2, 3, 4, 5]), part, time));
+        }
+        let carriers = one_of([Carriers::L1L2, Carriers::E1E5a, Carriers::B1B3]);
+        keep(Broadcast::state(&broadcast, one_of([1, 2, 3, 4, 5]), carriers, time, number()));
+        keep(Broadcast::ionosphere(&broadcast));
+    }
+}
+
+/// Calls everything in this module.
 pub fn run() {
     call_each([
         estimators,
         weighting,
+        broadcast::<3>,
+        broadcast::<32>,
         || filters::<{ states(10) }, _>(|| Estimator::guarded(motion())),
         || filters::<9, _>(Estimator::at_rest),
     ]);

@@ -1,4 +1,4 @@
-//! Ephemerides as satellites would broadcast them, fitted to precise orbits and clocks, as a RINEX navigation file.
+//! Broadcast ephemerides, fitted to precise orbits and clocks, as a RINEX navigation file.
 
 use std::fmt::Write as _;
 
@@ -11,19 +11,19 @@ use kestirim_gnss_ppp::{
 };
 use nalgebra::{DMatrix, DVector, Vector3};
 
-/// The interval of ephemerides, and how far from its time one is fitted, s.
+/// The interval between ephemerides, and the time on either side over which one is fitted, s.
 const INTERVAL: f64 = 7_200.0;
 const REACH: f64 = 4_500.0;
-/// Samples of an orbit that is fitted, s apart.
+/// The interval between samples of a fitted orbit, s.
 const STEP: f64 = 300.0;
-/// Numbers that are fitted.
+/// The number of fitted parameters.
 const NUMBERS: usize = 15;
-/// By what each of them is changed to see what it does: √m, 1, rad, rad/s, and so on.
+/// The step of each parameter for numerical differentiation: √m, 1, rad, rad/s, and so on.
 const CHANGES: [f64; NUMBERS] =
     [1e-3, 1e-7, 1e-7, 1e-11, 1e-7, 1e-7, 1e-11, 1e-7, 1e-11, 1e-7, 1e-7, 1.0, 1.0, 1e-7, 1e-7];
 
-/// The navigation file of a day (modified Julian date) with the satellites that orbits, clocks and antennas know.
-pub(super) fn navigation(
+/// The navigation file of a day (modified Julian date), with the satellites that orbits, clocks and antennas contain.
+pub(crate) fn navigation(
     day: i32,
     orbits: &Orbits,
     clocks: &Clocks,
@@ -80,7 +80,7 @@ impl Precise<'_> {
         if self.number > 100 { Constellation::Galileo } else { Constellation::Gps }
     }
 
-    /// From the centre of mass to the phase centre of the combination of both carriers.
+    /// The vector from the centre of mass to the phase centre of the combination of both carriers.
     fn to_phase_centre(&self, centre: &Vector3<f64>, time: GpsTime) -> Option<Vector3<f64>> {
         let antenna =
             self.antennas.satellite(self.number, FileTime::new(time.day(), time.second()))?;
@@ -94,7 +94,7 @@ impl Precise<'_> {
         Some(Vector3::from_fn(|axis, _| carriers.ionosphere_free([first[axis], second[axis]])))
     }
 
-    /// A parabola through the clock's samples.
+    /// The coefficients of a parabola through the clock's samples.
     fn clock(&self, time: GpsTime) -> Option<[f64; 3]> {
         let samples: Vec<_> = (self.clocks.satellite(self.number).iter())
             .map(|it| (model(it.time).since(time) / REACH, it.bias))
@@ -117,7 +117,7 @@ const fn pattern(offset: [f64; 3]) -> Pattern<'static> {
     Pattern { offset, first: 0.0, step: 1.0, mean: &[], azimuth_step: 0.0, by_azimuth: &[] }
 }
 
-/// The ellipse of a position and a velocity in the axes of its time.
+/// The elliptic elements of a position and a velocity in the axes of their time.
 fn elements(
     constellation: Constellation,
     time: GpsTime,
@@ -162,7 +162,7 @@ fn elements(
     }
 }
 
-/// The numbers that are fitted, in the order of [`CHANGES`].
+/// The fitted parameters, in the order of [`CHANGES`].
 fn numbers(it: &mut Ephemeris) -> [&mut f64; NUMBERS] {
     let ([a, b], [c, d], [e, f]) =
         (&mut it.latitude_terms, &mut it.radius_terms, &mut it.inclination_terms);
@@ -185,7 +185,7 @@ fn numbers(it: &mut Ephemeris) -> [&mut f64; NUMBERS] {
     ]
 }
 
-/// One step of Gauss and Newton.
+/// One Gauss–Newton step.
 fn improve(ephemeris: &mut Ephemeris, positions: &[(GpsTime, Vector3<f64>)]) {
     let rows = 3 * positions.len();
     let at = |it: &Ephemeris| {
@@ -220,7 +220,7 @@ fn header(content: &str, label: &str) -> String {
     format!("{content:<60}{label}\n")
 }
 
-/// A record. Every number is what it is for the messages' accuracies: 2 m of GPS, 3.12 m of Galileo.
+/// Writes a record. The accuracy field is set to the messages' value: 2 m for GPS, 3.12 m for Galileo.
 fn write(text: &mut String, number: u8, it: &Ephemeris) {
     let galileo = it.constellation == Constellation::Galileo;
     let hour = it.time.since(GpsTime::new(59_025, 0.0)) / 3600.0;

@@ -1,27 +1,31 @@
 //! Ephemerides: messages 1019, 1042, 1045 and 1046.
 
+use std::f64::consts::PI as SEMICIRCLE;
+
+use kestirim_gnss_message::accuracy::{sisa, ura};
 use rtcm_rs::msg::{Msg1019T, Msg1042T, Msg1045T, Msg1046T};
 
 use crate::navigation::{Ephemeris, Message as Of, time_of_week};
-use crate::streams::indices::{SEMICIRCLE, sisa, ura};
 use crate::time::GpsTime;
 
-/// Days of a week.
+/// The length of a week, days.
 pub(super) const WEEK: i32 = 7;
-/// Weeks of GPS are told modulo 1024: those from April 2019 on are meant, unless Galileo, whose first week was the 1024th, tells
-/// others.
+/// GPS weeks are transmitted modulo this: those from April 2019 on are assumed, unless Galileo, whose first week was
+/// GPS week 1024, tells others.
 pub(super) const ROLLOVER: i32 = 1_024;
+/// The number of weeks to add to a GPS week.
 const ROLLED_OVER: i32 = 2 * ROLLOVER;
+/// The GPS week in which Galileo time began.
 const GALILEO_WEEK: i32 = ROLLOVER;
-/// The first week of BeiDou's time.
+/// The GPS week in which BeiDou time began.
 const BEIDOU_WEEK: i32 = 1_356;
 
-/// The instant of a second of a week, counted from the first week of GPS.
+/// The instant of a second of a week, where the week is counted from `behind` weeks after the first week of GPS.
 fn instant(week: u16, behind: i32, second: f32) -> GpsTime {
     GpsTime::new(GpsTime::EPOCH.day() + WEEK * (i32::from(week) + behind), f64::from(second))
 }
 
-/// The orbit that a message tells.
+/// Converts the orbit in a message.
 macro_rules! orbit {
     ($message:ident, $rest:expr) => {{
         let it = $message;
@@ -44,7 +48,7 @@ macro_rules! orbit {
     }};
 }
 
-/// What the messages of GPS and Galileo tell, with the field that each has for it.
+/// Converts a message of GPS or Galileo, given the names of the fields that differ.
 macro_rules! ephemeris {
     ($message:ident, $of:expr, $week:ident, $behind:ident, $issue:ident, $rest:expr) => {{
         let it = $message;

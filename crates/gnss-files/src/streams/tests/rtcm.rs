@@ -1,4 +1,4 @@
-//! RTCM 3, as the decoder's own encoder makes it.
+//! RTCM 3, as produced by the decoder's own encoder.
 
 use std::f64::consts::PI;
 
@@ -12,13 +12,13 @@ use rtcm_rs::util::DataVec;
 
 use super::*;
 use crate::Carriers;
-use crate::streams::frames::crc_24q;
+use kestirim_gnss_message::crc_24q;
 
 fn frame(message: &message::Message) -> Vec<u8> {
     MessageBuilder::new().build_message(message).expect("a message").to_vec()
 }
 
-/// What both messages have in common.
+/// Fills in the fields that both messages have in common.
 macro_rules! told {
     ($type:ident { $($own:tt)* }, $it:ident) => {
         $type {
@@ -110,7 +110,7 @@ pub(super) fn observed(milliseconds: u32, lock: u16) -> Vec<u8> {
     }))
 }
 
-/// Two signals of a satellite of GLONASS in Moscow, on Thursday.
+/// A message with two signals of a GLONASS satellite, on Thursday in Moscow time.
 fn of_glonass(milliseconds: u32, number: u8, channel: Option<i8>) -> Vec<u8> {
     let mut data = Msg1087Data::default();
     data.satellite_data.push(Msm57GloSat {
@@ -140,7 +140,7 @@ fn of_glonass(milliseconds: u32, number: u8, channel: Option<i8>) -> Vec<u8> {
     }))
 }
 
-/// Two signals of a satellite of BeiDou.
+/// A message with two signals of a BeiDou satellite.
 fn of_beidou(milliseconds: u32) -> Vec<u8> {
     let mut data = Msg1127Data::default();
     data.satellite_data.push(Msm57Sat {
@@ -167,7 +167,8 @@ fn of_beidou(milliseconds: u32) -> Vec<u8> {
     }))
 }
 
-/// An epoch on Thursday at 4 o'clock, GLONASS before or behind the others, and one without GPS, to which GLONASS belongs.
+/// An epoch on Thursday at 4 o'clock, with GLONASS before or after the others, and one without GPS, to which GLONASS
+/// belongs.
 #[test]
 fn glonass_and_beidou_are_put_to_the_epochs_of_gps() -> Result<(), Error> {
     const AT: u32 = 4 * 86_400_000 + 14_400_000;
@@ -175,7 +176,7 @@ fn glonass_and_beidou_are_put_to_the_epochs_of_gps() -> Result<(), Error> {
     let dated = ephemerides(&broadcast()?);
     let [gps, beidou] = [observed(AT, 7), of_beidou(AT - 14_000)];
     let glonass = [of_glonass(OF_DAY, 7, Some(5)), of_glonass(OF_DAY, 22, None)].concat();
-    // Of no epoch of other systems.
+    // GLONASS without an epoch of other systems.
     let alone = of_glonass(OF_DAY + 500, 7, Some(5));
     for stream in [
         [&dated, &gps, &beidou, &glonass, &alone].map(Vec::as_slice).concat(),
@@ -268,7 +269,7 @@ fn observations_are_read_to_the_resolution_of_the_format() -> Result<(), Error> 
     Ok(())
 }
 
-/// The message with another number: the systems' messages of observations are alike.
+/// The message under another number: the observation messages of all systems have the same structure.
 fn renumbered(frame: &[u8], number: u16) -> Vec<u8> {
     let mut frame = frame[..frame.len() - 3].to_vec();
     frame[3] = (number >> 4) as u8;
@@ -281,7 +282,8 @@ fn renumbered(frame: &[u8], number: u16) -> Vec<u8> {
 fn what_is_passed_over_is_named() -> Result<(), Error> {
     let read = [ephemerides(&broadcast()?), observed(345_600_000, 7)].concat();
     let [gps, of_gps] = [observed(345_600_000, 7), ephemerides(&broadcast()?)];
-    // SBAS, NavIC and a number that none has; GPS and GLONASS as MSM5, and GPS as it was before; ephemerides of GLONASS and QZSS.
+    // SBAS, NavIC and a number that no message has; GPS and GLONASS as MSM5, and GPS in the old form; ephemerides of
+    // GLONASS and QZSS.
     let others = [1107, 1137, 1138, 1075, 1085].map(|number| renumbered(&gps, number)).concat();
     let end = 6 + usize::from(of_gps[2]);
     let broadcast = [1020, 1044].map(|number| renumbered(&of_gps[..end], number)).concat();
@@ -316,7 +318,7 @@ fn a_stream_without_a_date_is_refused() {
 
 #[test]
 fn an_ephemeris_for_the_next_week_is_not_a_week_early() -> Result<(), Error> {
-    // Told on Saturday evening for Sunday, 0 h; some senders tell the week of Sunday.
+    // Transmitted on Saturday evening for Sunday, 0 h; some senders give the week of Sunday.
     let sunday = crate::GpsTime::new(59_028, 0.0);
     let plain = broadcast()?;
     let next = plain

@@ -1,10 +1,10 @@
-//! UBX, made byte by byte.
+//! UBX, assembled byte by byte.
 
 use std::f64::consts::PI;
 
 use super::*;
 use crate::Carriers;
-use crate::streams::frames::crc_24q;
+use kestirim_gnss_message::crc_24q;
 
 fn frame(id: u8, held: &[u8]) -> Vec<u8> {
     let length = u16::try_from(held.len()).expect("a short message").to_le_bytes();
@@ -16,7 +16,7 @@ fn frame(id: u8, held: &[u8]) -> Vec<u8> {
     [&[0xb5, 0x62], &*summed, &sums].concat()
 }
 
-/// G05 on both carriers, E02 and R02 on the first, and a satellite of QZSS, as it was tracked for `lock` ms.
+/// A message with G05 on both carriers, E02 and R02 on the first, and a QZSS satellite, tracked for `lock` ms.
 pub(super) fn observed(second: f64, lock: u16) -> Vec<u8> {
     observed_in_week(2111, second, lock)
 }
@@ -25,7 +25,7 @@ fn observed_in_week(week: u16, second: f64, lock: u16) -> Vec<u8> {
     let signals = [
         (0, 5, 0, 21e6, 1.1e8, 7),
         (0, 5, 3, 21e6 + 3.0, 0.9e8, 7),
-        // Half a cycle is not known.
+        // The half cycle is not resolved.
         (2, 2, 0, 24e6, 1.2e8, 3),
         (6, 2, 0, 19e6, 1.0e8, 7),
         (5, 2, 0, 39e6, 2.0e8, 7),
@@ -45,14 +45,18 @@ fn observed_in_week(week: u16, second: f64, lock: u16) -> Vec<u8> {
     frame(0x15, &held)
 }
 
-/// Bits from the first to the last, in words with room for parity.
+/// A GPS subframe: bits from the first to the last, in words with room for parity.
 fn subframe(number: u64, fields: &[(i64, usize)]) -> Vec<u8> {
     subframe_of([0, 1], number, fields)
 }
 
-/// The same of another system and satellite.
+/// A subframe of another system and satellite.
 fn subframe_of(sender: [u8; 2], number: u64, fields: &[(i64, usize)]) -> Vec<u8> {
     let mut bits = vec![false; 240];
+    for (place, bit) in [true, false, false, false, true, false, true, true].into_iter().enumerate()
+    {
+        bits[place] = bit;
+    }
     let mut place = 43;
     for (value, width) in [(number as i64, 3), (0, 2)].iter().chain(fields) {
         for bit in (0..*width).rev() {
@@ -63,7 +67,7 @@ fn subframe_of(sender: [u8; 2], number: u64, fields: &[(i64, usize)]) -> Vec<u8>
     let mut held = [&sender[..], &[0, 0, 10, 0, 2, 0]].concat();
     for word in bits.chunks(24) {
         let word = word.iter().fold(0_u32, |word, bit| word << 1 | u32::from(*bit));
-        // Parity, and two bits that say nothing.
+        // Parity, and two meaningless bits.
         held.extend((word << 6 | 0xc000_002a).to_le_bytes());
     }
     frame(0x13, &held)
@@ -120,8 +124,8 @@ pub(super) fn subframes(it: &Ephemeris) -> Vec<u8> {
     [subframe(1, &first), subframe(2, &second), subframe(3, &third)].concat()
 }
 
-/// A word of the message of Galileo's first satellite, as both parts of a page: its type, the number of the issue if it has one,
-/// and the rest.
+/// A message word of Galileo's first satellite, as both parts of a page: its type, its issue number if it has one, and
+/// the rest.
 fn word(number: i64, fields: &[(i64, usize)]) -> Vec<u8> {
     let bits = |fields: &[(i64, usize)]| {
         let bits =
@@ -138,7 +142,7 @@ fn word(number: i64, fields: &[(i64, usize)]) -> Vec<u8> {
         bits.chunks(8).map(byte).collect::<Vec<_>>()
     };
     let sum = bits(&[(i64::from(crc_24q(&packed(&summed))), 24)]);
-    // The tail and what a receiver fills up with say nothing.
+    // The tail and the receiver's fill bits are meaningless.
     let page = [even, vec![true; 14], odd, sum, vec![true; 22]].concat();
     let mut frame_of = vec![2, 1, 1, 0, 8, 0, 2, 0];
     for word in packed(&page).chunks(4) {
@@ -147,7 +151,7 @@ fn word(number: i64, fields: &[(i64, usize)]) -> Vec<u8> {
     frame(0x13, &frame_of)
 }
 
-/// The words of an ephemeris.
+/// The message words of an ephemeris.
 pub(super) fn words(it: &Ephemeris) -> [Vec<u8>; 5] {
     let turns = |angle: f64, power| in_units(angle / PI, power);
     let minutes = |time: crate::GpsTime| {
@@ -208,7 +212,7 @@ fn ephemerides_of_galileo_are_what_the_file_has() -> Result<(), Error> {
     };
     let [first, second, third, fourth, fifth] = words(&told);
     let mut damaged = second.clone();
-    // A bit of the page, and the frame's own sums made good.
+    // A bit of the page is flipped, and the frame's own checksum is corrected.
     damaged[20] ^= 4;
     let damaged = frame(0x13, &damaged[6..damaged.len() - 2]);
     let other = words(&Ephemeris { issue: told.issue + 1, ..told })[1].clone();
@@ -227,6 +231,55 @@ fn ephemerides_of_galileo_are_what_the_file_has() -> Result<(), Error> {
     Ok(())
 }
 
+/// A subframe of D1 of a satellite of BeiDou, sent at a second of the week, with its parity bits set.
+fn d1([number, signal]: [u8; 2], part: i64, sent: i64, fields: &[(i64, usize)]) -> Vec<u8> {
+    let front = [(0x712, 11), (0, 4), (part, 3), (sent, 20)];
+    let bits = front.iter().chain(fields).flat_map(|&(value, width)| {
+        (0..width).rev().map(move |bit| u32::from(value >> bit & 1 == 1))
+    });
+    let mut bits = bits.chain(std::iter::repeat(0));
+    let mut held = vec![3, number, signal, 0, 10, 0, 2, 0];
+    for word in 0..10 {
+        let parity = if word == 0 { 4 } else { 8 };
+        let data = bits.by_ref().take(30 - parity).fold(0, |word, bit| word << 1 | bit);
+        held.extend((data << parity | ((1 << parity) - 1) | 3 << 30).to_le_bytes());
+    }
+    frame(0x13, &held)
+}
+
+#[test]
+fn ephemerides_of_beidou_are_dated_by_gps() -> Result<(), Error> {
+    // Times of 96 h: Thursday 0 o'clock of BeiDou's time.
+    let tick: i64 = 345_600 / 8;
+    let first = [(0, 1), (0, 5), (0, 4), (0, 13), (tick, 17), (50, 10), (-20, 10), (0, 64)];
+    let first = [&first[..], &[(0, 11), (123_456, 24), (-77, 22), (3, 5)]].concat();
+    let second = [(0, 16), (0, 18), (1 << 30, 32), (1 << 23, 32), (0, 18), (640, 18), (0, 18)];
+    let second = [&second[..], &[(5_282 << 19, 32), (tick >> 15, 2)]].concat();
+    let third = [(tick & 0x7fff, 15), (1 << 29, 32), (0, 18), (0, 24), (0, 18), (0, 14)];
+    let third = [&third[..], &[(-(1 << 28), 32), (1 << 27, 32)]].concat();
+    let of = |sender: [u8; 2], late: i64| {
+        [d1(sender, 1, 100, &first), d1(sender, 2, 106, &second), d1(sender, 3, 112 + late, &third)]
+            .concat()
+    };
+    // Both signals of C19; one whose parts are of different frames; a geostationary one, which sends another message.
+    let sent = [of([19, 0], 0), of([19, 2], 0), of([20, 0], 30), of([1, 1], 0)].concat();
+    let read = Navigation::parse(&[text([observed(345_000.0, 100), sent].concat())])?;
+
+    let told = read.satellite(199, Message::D1).first().expect("an ephemeris");
+    assert_eq!((told.time.day(), told.time.second()), (59_025, 14.0));
+    assert_eq!(told.clock_time, told.time);
+    assert_eq!(told.clock, [123_456.0 * 2_f64.powi(-33), -77.0 * 2_f64.powi(-50), 0.0]);
+    assert_eq!(told.group_delays, [50.0 * 1e-10, -20.0 * 1e-10]);
+    assert_eq!((told.issue, told.accuracy, told.is_healthy), (3, Some(2.0), true));
+    assert_eq!((told.root_of_axis, told.eccentricity), (5_282.0, 2_f64.powi(-10)));
+    assert_eq!((told.mean_anomaly, told.radius_terms), (PI / 2.0, [10.0, 0.0]));
+    assert_eq!((told.node, told.inclination, told.perigee), (-PI / 8.0, PI / 4.0, PI / 16.0));
+    assert!(read.satellite(200, Message::D1).is_empty());
+    let warnings: Vec<_> = read.unserved.iter().map(ToString::to_string).collect();
+    assert_eq!(warnings, ["file: ephemerides of BeiDou (1) are in the file, but are not read"]);
+    Ok(())
+}
+
 #[test]
 fn ephemerides_are_what_the_file_has() -> Result<(), Error> {
     let [(_, told), _] = broadcast()?;
@@ -241,7 +294,7 @@ fn ephemerides_are_what_the_file_has() -> Result<(), Error> {
     let [alpha, beta] = read.ionosphere.expect("the page");
     assert_eq!((alpha[0], alpha[3]), (5.0 * 2_f64.powi(-30), -2.0 * 2_f64.powi(-24)));
     assert_eq!((beta[0], beta[3]), (81_920.0, -524_288.0));
-    // Of another issue there is none.
+    // A word of another issue makes no ephemeris.
     let mut other = told;
     other.issue = 59;
     let mixed = [
@@ -282,7 +335,7 @@ fn observations_are_read_to_the_last_bit() -> Result<(), Error> {
 
 #[test]
 fn a_loss_within_a_gap_is_seen() -> Result<(), Error> {
-    // Tracked for longer than before, but not since then; then for longer than can be told.
+    // Tracked for longer than before, but not since the preceding epoch; then for longer than the message can express.
     let stream = [
         observed(604_790.0, 5_000),
         observed_in_week(2112, 20.0, 29_000),
@@ -300,7 +353,7 @@ fn a_loss_within_a_gap_is_seen() -> Result<(), Error> {
 #[test]
 fn what_is_passed_over_is_named() -> Result<(), Error> {
     let [(_, told), _] = broadcast()?;
-    // SBAS's 123, QZSS's second and a satellite of GLONASS that the receiver has no number for.
+    // SBAS 123, the second QZSS satellite, and a GLONASS satellite for which the receiver has no number.
     let others = [[1, 123], [5, 2], [6, 255]].map(|sender| subframe_of(sender, 1, &[])).concat();
     let stream = text([observed(345_600.0, 1_000), subframes(&told), others].concat());
     let observed = Observations::parse(&stream)?.unserved.map(|it| it.to_string());
@@ -333,7 +386,7 @@ fn a_subframe_is_dated_by_the_epoch_before_it() -> Result<(), Error> {
         ..told
     };
     let stream = [
-        // Before any epoch: by the first.
+        // Parts before any epoch take the week of the first.
         subframes(&told),
         observed(350_000.0, 1_000),
         observed_in_week(2112, 360_000.0, 1_000),

@@ -1,16 +1,16 @@
-//! The application on the board that QEMU plays.
+//! The application on the board that QEMU emulates.
 
 #![no_std]
 #![no_main]
 
 use board::{CmsdkUart, Tape};
 use cortex_m_rt::entry;
-use gnss_app::{App, Epoch, Error};
+use gnss_app::{App, Epoch, Error, Products};
 use kestirim_ppp_filter::{SatelliteReport, Slipped};
-// The table of interrupts, as for all programs of this board; here nobody serves one.
+// The interrupt table, as for all programs of this board; this one handles none.
 use mps2_an386 as _;
 
-/// Receiver and modem.
+/// The number of ports: receiver and modem.
 const PORTS: usize = 2;
 
 #[entry]
@@ -26,7 +26,7 @@ fn main() -> ! {
 
 fn receive(tape: &Tape<PORTS>) -> Result<(), Error> {
     let [receiver, modem] = tape.ports();
-    let mut app = App::new(receiver, modem, CmsdkUart::first());
+    let mut app = App::new(receiver, Products::new(modem), CmsdkUart::first());
     while tape.wait() {
         while let Some(epoch) = app.poll(tape.time_us())? {
             log(&epoch);
