@@ -5,8 +5,8 @@ use kestirim_gnss_ppp::{
     Carriers, Ephemeris, GpsTime, Klobuchar, NavigationMessage, SatelliteState,
 };
 
-/// The time after which parts are not joined with those before, since numbers of issues repeat, and after which a satellite makes
-/// room for another, s.
+/// The time after which parts are not joined with those before, since numbers of issues repeat, and after which a
+/// satellite makes room for another, s.
 const SILENCE: f64 = 300.0;
 /// The square root of the Earth's radius, √m.
 const LEAST_ROOT_OF_AXIS: f64 = 2_525.0;
@@ -98,9 +98,15 @@ impl<const N: usize> Broadcast<N> {
     }
 
     /// Adds a part of a satellite's message, received within half a week of an instant in GPS time. Returns whether it
-    /// completes an ephemeris. `number` is the satellite's own among all systems, as in
+    /// completes an ephemeris. A part at a time that is not finite changes nothing.
+    ///
+    /// `number` belongs to one satellite of all systems, as in
     /// [`SatelliteObservation::satellite`](crate::SatelliteObservation::satellite).
     pub fn take(&mut self, number: u8, part: MessagePart, received: GpsTime) -> bool {
+        // Otherwise its satellite would never make room for another.
+        if !received.second().is_finite() {
+            return false;
+        }
         if let MessagePart::Gps(subframe) = part
             && let Some([alpha, beta]) = subframe.ionosphere()
         {

@@ -127,6 +127,11 @@ fn what_is_no_orbit_or_of_another_system_does_not_serve() {
     assert_eq!(state(&broadcast, 5, heard), Err(NoEphemeris::Missing));
     hear(&mut broadcast, 5, 0, 0, heard);
     assert!(broadcast.ionosphere().is_none());
+    // Neither does a part whose time of reception is not a number.
+    for number in [1, 2, 3] {
+        assert!(!broadcast.take(6, subframe(number, 0, 0), GpsTime::new(SUNDAY, f64::NAN)));
+    }
+    assert_eq!(state(&broadcast, 6, heard), Err(NoEphemeris::Missing));
 }
 
 #[test]
