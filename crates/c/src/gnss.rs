@@ -4,7 +4,7 @@
 use core::ffi::c_void;
 
 use heapless::Vec;
-use kestirim_gnss_ppp::{Carriers, Corrections, GpsTime, Pattern, Receiver, SatelliteState};
+use kestirim_gnss_ppp::{Carriers, Corrections, GpsTime, Receiver, SatelliteState};
 use kestirim_ppp_filter::{
     Config, Health as Quality, Motion, PppFilter, SatelliteObservation, Solution, states,
 };
@@ -12,10 +12,9 @@ use kestirim_scalar::Components;
 use kestirim_snapshot::layout;
 use nalgebra::SVector;
 
-use crate::memory::{
-    self, Handle, argument, array, held, held_mut, optional, place, status, wanted,
-};
-use crate::{Health, Status};
+use crate::gnss_antenna::antenna;
+use crate::memory::{self, Handle, argument, array, held, held_mut, place, status, wanted};
+use crate::{GnssPattern, Health, Status};
 
 /// Largest number of satellites in an epoch.
 pub const MOST_SATELLITES: usize = 12;
@@ -86,44 +85,6 @@ pub struct GnssTime {
 impl GnssTime {
     pub(crate) fn instant(self) -> GpsTime {
         GpsTime::new(self.day, self.second)
-    }
-}
-
-/// Phase centre of an antenna on one frequency, as an ANTEX file describes it.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct GnssPattern {
-    /// Mean phase centre, m: for a receiver's antenna north, east and up of its reference point; for a satellite's
-    /// along X, Y and Z of its body.
-    pub offset: [f64; 3],
-    /// First angle of the grid, degrees: from the zenith (receiver) or nadir (satellite).
-    pub first: f64,
-    /// Step of the grid's zenith or nadir angles, degrees.
-    pub step: f64,
-    /// Azimuth-independent phase centre variation at each angle of the grid, m: `count` numbers.
-    pub mean: *const f64,
-    /// Number of angles of the grid.
-    pub count: usize,
-    /// Step of the azimuths, degrees; 0 if the grid has none.
-    pub azimuth_step: f64,
-    /// Phase centre variations that depend on the azimuth, m: a row like `mean` for each azimuth from 0 to 360 degrees,
-    /// one after the other.
-    pub by_azimuth: *const f64,
-    /// Total number of values in `by_azimuth`; 0 if the grid has no azimuths.
-    pub azimuth_count: usize,
-}
-
-impl GnssPattern {
-    /// The pattern in the form of the models.
-    ///
-    /// # Safety
-    /// Its pointers may be read.
-    unsafe fn pattern<'a>(&self) -> Result<Pattern<'a>, Status> {
-        // SAFETY: the caller keeps what the header asks for.
-        let (mean, by_azimuth) =
-            unsafe { (array(self.mean, self.count)?, array(self.by_azimuth, self.azimuth_count)?) };
-        let (offset, first, step) = (self.offset, self.first, self.step);
-        Ok(Pattern { offset, first, step, mean, azimuth_step: self.azimuth_step, by_azimuth })
     }
 }
 
@@ -247,20 +208,6 @@ impl Positioning {
         // All states are reserved for satellites.
         let config = Config { elevation_mask, gradient: 0.0, ..config };
         Ok(Self { filter: PppFilter::new(config), ut1_minus_gps, eccentricity, last: None })
-    }
-}
-
-/// Two antenna patterns behind a pointer that may be null.
-///
-/// # Safety
-/// It and the pointers of the patterns may be read.
-unsafe fn antenna<'a>(
-    patterns: *const [GnssPattern; 2],
-) -> Result<Option<[Pattern<'a>; 2]>, Status> {
-    // SAFETY: the caller keeps what the header asks for.
-    unsafe {
-        let Some([first, second]) = optional(patterns)? else { return Ok(None) };
-        Ok(Some([first.pattern()?, second.pattern()?]))
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod drone;
 mod gnss;
+mod gnss_antenna;
 mod gnss_broadcast;
 mod gnss_products;
 mod health;
@@ -16,6 +17,7 @@ mod wheels;
 
 pub use drone::*;
 pub use gnss::*;
+pub use gnss_antenna::*;
 pub use gnss_broadcast::*;
 pub use gnss_products::*;
 pub use health::*;

@@ -3,15 +3,16 @@
 use core::array;
 use core::f64::consts::PI;
 
+use crate::bits::Packer;
 use crate::{Bits, Ephemeris, Part, accuracy};
 
 /// Words of a subframe.
 pub const WORDS: usize = 10;
 /// Bits of a word: all of it, what the first one holds besides 4 bits of parity, and what the others hold besides 8.
-const WHOLE: usize = 30;
-const FIRST: usize = 26;
-const OTHER: usize = 22;
-const BYTES: usize = (FIRST + (WORDS - 1) * OTHER) / 8;
+const WHOLE: u32 = 30;
+const FIRST: u32 = 26;
+const OTHER: u32 = 22;
+const BYTES: usize = (FIRST as usize + (WORDS - 1) * OTHER as usize) / 8;
 /// The preamble of each subframe.
 const PREAMBLE: u64 = 0b111_0001_0010;
 /// The subframe's number, behind the preamble and four reserved bits.
@@ -39,19 +40,11 @@ impl Subframe {
     /// them for B1I D1 and B2I D1. `None` without the preamble. The receiver must have checked the parity. Geostationary satellites
     /// send another message, D2, with the same preamble: the caller leaves them out.
     pub fn from_words(words: &[u32; WORDS]) -> Option<Self> {
-        let mut bytes = [0; BYTES];
-        let mut place = 0;
-        for (index, word) in words.iter().enumerate() {
+        let pack = |packed: Packer<BYTES>, (index, word): (usize, &u32)| {
             let held = if index == 0 { FIRST } else { OTHER };
-            for bit in 0..held {
-                let bit = word.wrapping_shr((WHOLE - 1 - bit) as u32) as u8 & 1;
-                if let Some(byte) = bytes.get_mut(place / 8) {
-                    *byte |= bit << (7 - place % 8);
-                }
-                place += 1;
-            }
-        }
-        let subframe = Self(bytes);
+            packed.push(u64::from(word.wrapping_shr(WHOLE - held)), held)
+        };
+        let subframe = Self(words.iter().enumerate().fold(Packer::new(), pack).bytes());
         (subframe.bits(0).integer(11) == PREAMBLE).then_some(subframe)
     }
 

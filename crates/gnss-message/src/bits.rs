@@ -39,6 +39,38 @@ impl<'a> Bits<'a> {
     }
 }
 
+/// Packs numbers into N bytes, most significant bit first. What has no room is dropped.
+pub(crate) struct Packer<const N: usize> {
+    bytes: [u8; N],
+    place: usize,
+}
+
+impl<const N: usize> Packer<N> {
+    pub(crate) const fn new() -> Self {
+        Self { bytes: [0; N], place: 0 }
+    }
+
+    /// Appends the lowest bits of a number.
+    pub(crate) fn push(mut self, value: u64, bits: u32) -> Self {
+        for bit in (0..bits).rev() {
+            if let Some(byte) = self.bytes.get_mut(self.place / 8) {
+                *byte |= (value.wrapping_shr(bit) as u8 & 1) << (7 - self.place % 8);
+            }
+            self.place = self.place.saturating_add(1);
+        }
+        self
+    }
+
+    /// Appends bits of another string.
+    pub(crate) fn copy(self, mut from: Bits<'_>, bits: usize) -> Self {
+        (0..bits).fold(self, |packed, _| packed.push(from.integer(1), 1))
+    }
+
+    pub(crate) const fn bytes(self) -> [u8; N] {
+        self.bytes
+    }
+}
+
 /// 2ⁿ for −1022 ≤ n ≤ 1023.
 const fn power_of_two(n: i32) -> f64 {
     f64::from_bits((n.wrapping_add(1023) as u64) << 52)

@@ -3,6 +3,7 @@
 use core::array;
 use core::f64::consts::PI;
 
+use crate::bits::Packer;
 use crate::{Bits, Ephemeris, Part, accuracy, crc_24q};
 
 /// Words of 32 bits in which a receiver passes a page on: the first half its even part, the second half its odd one.
@@ -42,31 +43,19 @@ impl Word {
         if begin(even) != 0 || begin(odd) != 2 {
             return None;
         }
-        let mut summed = [0; (PADDING + FRONT + EVEN + SUMMED) / 8];
-        pack(&mut summed, [(&[0][..], 0, PADDING), (even, 0, FRONT + EVEN), (odd, 0, SUMMED)]);
-        if u64::from(crc_24q(&summed)) != Bits::at(odd, SUMMED).integer(24) {
+        let summed = Packer::<{ (PADDING + FRONT + EVEN + SUMMED) / 8 }>::new()
+            .push(0, PADDING as u32)
+            .copy(Bits::at(even, 0), FRONT + EVEN)
+            .copy(Bits::at(odd, 0), SUMMED);
+        if u64::from(crc_24q(&summed.bytes())) != Bits::at(odd, SUMMED).integer(24) {
             return None;
         }
-        let mut word = [0; (EVEN + ODD) / 8];
-        pack(&mut word, [(even, FRONT, EVEN), (odd, FRONT, ODD)]);
-        Some(Self(word))
+        let word = Packer::new().copy(Bits::at(even, FRONT), EVEN);
+        Some(Self(word.copy(Bits::at(odd, FRONT), ODD).bytes()))
     }
 
     const fn bits(&self) -> Bits<'_> {
         Bits::at(&self.0, TYPE)
-    }
-}
-
-/// Joins pieces of bits, each given by its bytes, its first bit and its length.
-fn pack<const N: usize>(joined: &mut [u8], pieces: [(&[u8], usize, usize); N]) {
-    let bit = |bytes, place| Bits::at(bytes, place).integer(1) as u8;
-    let bits = pieces
-        .iter()
-        .flat_map(|&(bytes, from, count)| (from..from + count).map(move |place| (bytes, place)));
-    for (index, (bytes, place)) in bits.enumerate() {
-        if let Some(byte) = joined.get_mut(index / 8) {
-            *byte |= bit(bytes, place) << (7 - index % 8);
-        }
     }
 }
 

@@ -2,12 +2,14 @@
 
 use core::f64::consts::PI;
 
+use crate::bits::Packer;
 use crate::{Bits, Ephemeris, Part, accuracy};
 
 /// Words of a subframe.
 pub const WORDS: usize = 10;
-/// Bytes of a word without its parity.
-const BYTES: usize = 3;
+/// Bits of a word without its parity, and those of its parity.
+const DATA_BITS: u32 = 24;
+const PARITY: u32 = 6;
 /// The preamble of each subframe.
 const PREAMBLE: u64 = 0x8b;
 /// The bit of the alert flag: ranges may be worse than the accuracy says.
@@ -25,21 +27,16 @@ const TICK: i32 = 4;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Subframe([u8; WORDS * BYTES]);
+pub struct Subframe([u8; WORDS * DATA_BITS as usize / 8]);
 
 impl Subframe {
     /// A subframe from words of 30 bits, right aligned, whose last 6 bits are the parity, as UBX-RXM-SFRBX has them for L1 C/A.
     /// `None` without the preamble of LNAV. The receiver must have checked the parity and restored inverted words.
     pub fn from_words(words: &[u32; WORDS]) -> Option<Self> {
-        let mut bytes = [0; WORDS * BYTES];
-        for (bytes, word) in bytes.chunks_exact_mut(BYTES).zip(words) {
-            // The highest two bits are unused.
-            let word = (word << 2).to_be_bytes();
-            for (byte, of_word) in bytes.iter_mut().zip(word) {
-                *byte = of_word;
-            }
-        }
-        let subframe = Self(bytes);
+        // The highest two bits are unused.
+        let pack =
+            |packed: Packer<_>, word: &u32| packed.push(u64::from(word >> PARITY), DATA_BITS);
+        let subframe = Self(words.iter().fold(Packer::new(), pack).bytes());
         (subframe.bits(0).integer(8) == PREAMBLE).then_some(subframe)
     }
 

@@ -1,3 +1,5 @@
+use core::mem::discriminant;
+
 use heapless::Vec;
 use kestirim_gnss_message::{self as message, Collector, beidou, galileo, gps};
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
@@ -208,13 +210,8 @@ impl Parts {
     }
 
     /// Whether a part belongs to the same message.
-    const fn are_of(&self, part: &MessagePart) -> bool {
-        matches!(
-            (self, part),
-            (Self::Gps(_), MessagePart::Gps(_))
-                | (Self::Galileo(_), MessagePart::Galileo(_))
-                | (Self::BeiDou(_), MessagePart::BeiDou(_))
-        )
+    fn are_of(&self, part: &MessagePart) -> bool {
+        discriminant(self) == discriminant(&Self::of(part))
     }
 
     fn take(&mut self, part: MessagePart) -> Option<(NavigationMessage, message::Ephemeris)> {

@@ -7,14 +7,12 @@ use std::f64::consts::PI;
 
 use embedded_io::{ErrorType, Write};
 use gnss_app::{App, Broadcasts, Unusable};
-use kestirim_gnss_files::{
-    Antennas, Clocks, Ephemeris, GpsTime, Message, Navigation, Observations, Orbits, Text,
-};
+use kestirim_gnss_files::{Ephemeris, Message, Navigation, Observations, Text};
 use kestirim_tests::gnss::ESBC;
 use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;
 
-use super::gnss_broadcast::fit;
+use super::gnss_broadcast::fitted_to_products;
 use super::gnss_streams::{ubx, ubx_frame};
 
 /// Epochs of 30 s: six hours.
@@ -137,20 +135,7 @@ fn stream(observations: &Observations, navigation: &Navigation, unhealthy: u8) -
 #[test]
 fn a_receiver_alone_finds_its_place() {
     let Some(folder) = folder_of("gnss") else { return };
-    let path = |name: &str| folder.join("esbc2020177_multi").join(name);
-    let orbits = Orbits::read(&[
-        path("GRG0MGXFIN_20201760000_01D_15M_ORB.SP3.gz"),
-        path("GRG0MGXFIN_20201770000_01D_15M_ORB.SP3.gz"),
-    ]);
-    let clocks = Clocks::read(&[path("GRG0MGXFIN_20201770000_01D_30S_CLK.CLK.gz")]);
-    let antennas = Antennas::read(&[folder.join("esbc2020177/esbc.atx.gz")], "");
-    let navigation = fit::navigation(
-        GpsTime::new(59_025, 0.0).day(),
-        &orbits.expect("orbits"),
-        &clocks.expect("clocks"),
-        &antennas.expect("antennas"),
-    );
-    let navigation = Text::unpack("day.nav", navigation.into_bytes())
+    let navigation = Text::unpack("day.nav", fitted_to_products(&folder).into_bytes())
         .and_then(|text| Navigation::parse(&[text]))
         .expect("ephemerides");
     let observations = Observations::read(folder.join(ESBC.observations)).expect("observations");

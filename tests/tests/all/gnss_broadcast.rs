@@ -6,7 +6,7 @@
 //! The recordings are in `../shared/data/gnss`, beside the repository. Where they are absent these tests print SKIPPED
 //! and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
-pub(crate) mod fit;
+mod fit;
 
 use std::path::{Path, PathBuf};
 
@@ -22,6 +22,21 @@ use nalgebra::Vector3;
 const KINEMATIC: Motion = Motion::Kinematic { process_noise: 100.0 };
 /// The time up to which ephemerides are fitted, s.
 const UNTIL: f64 = 82_800.0;
+
+/// The navigation file of ESBC's day, GPS and Galileo, fitted to precise products.
+pub(super) fn fitted_to_products(folder: &Path) -> String {
+    let path = |name: &str| -> PathBuf { folder.join("esbc2020177_multi").join(name) };
+    let orbits = Orbits::read(&[
+        path("GRG0MGXFIN_20201760000_01D_15M_ORB.SP3.gz"),
+        path("GRG0MGXFIN_20201770000_01D_15M_ORB.SP3.gz"),
+    ]);
+    let clocks = Clocks::read(&[path("GRG0MGXFIN_20201770000_01D_30S_CLK.CLK.gz")]);
+    let antennas =
+        Antennas::read(&[folder.join("esbc2020177/esbc.atx.gz"), path("galileo_igs20.atx.gz")], "");
+    let (orbits, clocks, antennas) =
+        (orbits.expect("orbits"), clocks.expect("clocks"), antennas.expect("antennas"));
+    fit::navigation(59_025, &orbits, &clocks, &antennas)
+}
 
 /// The observations of a station with a navigation file instead of products.
 fn with_navigation(folder: &Path, station: Station, navigation: &str) -> Recording {
@@ -102,17 +117,7 @@ fn is_never_converged(followed: &Followed) {
 #[test]
 fn a_day_of_fitted_ephemerides() {
     let Some(folder) = folder_of("gnss") else { return };
-    let path = |name: &str| -> PathBuf { folder.join("esbc2020177_multi").join(name) };
-    let orbits = Orbits::read(&[
-        path("GRG0MGXFIN_20201760000_01D_15M_ORB.SP3.gz"),
-        path("GRG0MGXFIN_20201770000_01D_15M_ORB.SP3.gz"),
-    ]);
-    let clocks = Clocks::read(&[path("GRG0MGXFIN_20201770000_01D_30S_CLK.CLK.gz")]);
-    let antennas =
-        Antennas::read(&[folder.join("esbc2020177/esbc.atx.gz"), path("galileo_igs20.atx.gz")], "");
-    let (orbits, clocks, antennas) =
-        (orbits.expect("orbits"), clocks.expect("clocks"), antennas.expect("antennas"));
-    let navigation = fit::navigation(59_025, &orbits, &clocks, &antennas);
+    let navigation = fitted_to_products(&folder);
     let fitted = with_navigation(&folder, ESBC_MULTI, &navigation);
     let precise = ESBC_MULTI.read(&folder);
     let all: Vec<f64> = (precise.epochs(Some(UNTIL)).iter().step_by(10))

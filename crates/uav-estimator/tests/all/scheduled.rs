@@ -71,8 +71,7 @@ fn grid(airframe: &Airframe, airspeeds: &[f64; 5]) -> [Local; 5] {
     airspeeds.map(|airspeed| local(airframe, airspeed, &origin))
 }
 
-/// A nonlinear flight in calm air over all airspeeds of the grid and back, in deviations from the origin, with its
-/// true states.
+/// A nonlinear flight in calm air over all airspeeds and back, in deviations from the origin, with its true states.
 fn flight(
     airframe: &Airframe,
     airspeeds: &[f64; 5],

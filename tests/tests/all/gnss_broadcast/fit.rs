@@ -23,7 +23,7 @@ const CHANGES: [f64; NUMBERS] =
     [1e-3, 1e-7, 1e-7, 1e-11, 1e-7, 1e-7, 1e-11, 1e-7, 1e-11, 1e-7, 1e-7, 1.0, 1.0, 1e-7, 1e-7];
 
 /// The navigation file of a day (modified Julian date), with the satellites that orbits, clocks and antennas contain.
-pub(crate) fn navigation(
+pub(super) fn navigation(
     day: i32,
     orbits: &Orbits,
     clocks: &Clocks,
@@ -150,7 +150,7 @@ fn elements(
         mean_anomaly: anomaly - eccentricity * anomaly.sin(),
         mean_motion_correction: 0.0,
         perigee,
-        node: node + EARTH_ROTATION * second_of_week(time),
+        node: node + EARTH_ROTATION * time.second_of_week(),
         node_rate: 0.0,
         inclination: f64::atan2(momentum.xy().norm(), momentum.z),
         inclination_rate: 0.0,
@@ -212,10 +212,6 @@ fn improve(ephemeris: &mut Ephemeris, positions: &[(GpsTime, Vector3<f64>)]) {
     }
 }
 
-fn second_of_week(time: GpsTime) -> f64 {
-    f64::from((time.day() - 44_244).rem_euclid(7)) * 86_400.0 + time.second()
-}
-
 fn header(content: &str, label: &str) -> String {
     format!("{content:<60}{label}\n")
 }
@@ -230,11 +226,11 @@ fn write(text: &mut String, number: u8, it: &Ephemeris) {
     let rows = [
         [1.0, crs, it.mean_motion_correction, it.mean_anomaly],
         [cuc, it.eccentricity, cus, it.root_of_axis],
-        [second_of_week(it.time), cic, it.node, cis],
+        [it.time.second_of_week(), cic, it.node, cis],
         [it.inclination, crc, it.perigee, it.node_rate],
         [it.inclination_rate, if galileo { 258.0 } else { 1.0 }, 2111.0, 0.0],
         [if galileo { 3.12 } else { 2.0 }, 0.0, 0.0, 1.0],
-        [second_of_week(it.time), if galileo { 0.0 } else { 4.0 }, 0.0, 0.0],
+        [it.time.second_of_week(), if galileo { 0.0 } else { 4.0 }, 0.0, 0.0],
     ];
     let fixed = |value: f64| {
         let plain = format!("{value:.12e}");
