@@ -49,6 +49,9 @@
 // Upper bound of the size of an ephemeris collection on any target, bytes: for static memory.
 #define KESTIRIM_GNSS_BROADCAST_SIZE 16384
 
+// Upper bound of the size of corrections on any target, bytes: for static memory.
+#define KESTIRIM_GNSS_CORRECTIONS_SIZE 20480
+
 // Largest number of samples of an orbit or a clock: four hours of an orbit with a sample every quarter of an hour.
 #define KESTIRIM_MOST_PRODUCTS 16
 
@@ -366,6 +369,10 @@ typedef struct kestirim_gnss kestirim_gnss;
 // receiver needs no service, and its position is good to metres. It computes in double precision, for processors with
 // enough memory.
 typedef struct kestirim_gnss_broadcast kestirim_gnss_broadcast;
+
+// Corrections: those of a service (SSR in RTCM 3) for the satellites of an ephemeris collection. With them positions become as
+// good as the service is, a decimetre or less, without files. It computes in double precision, for processors with enough memory.
+typedef struct kestirim_gnss_corrections kestirim_gnss_corrections;
 
 // A pedestrian tracker: estimates the path of a walking foot from the IMU on it.
 //
@@ -865,6 +872,45 @@ kestirim_status kestirim_gnss_broadcast_at(const struct kestirim_gnss_broadcast 
                                            const struct kestirim_gnss_time *received,
                                            double code,
                                            struct kestirim_gnss_satellite *state);
+
+// Size of corrections on this target, bytes.
+size_t kestirim_gnss_corrections_size(void);
+
+// Alignment of the memory of corrections on this target, bytes.
+size_t kestirim_gnss_corrections_align(void);
+
+// Creates corrections of no satellite in memory of at least `kestirim_gnss_corrections_size()` bytes.
+kestirim_status kestirim_gnss_corrections_init(void *memory,
+                                               size_t size,
+                                               struct kestirim_gnss_corrections **corrections);
+
+// Processes a frame of RTCM 3, from its preamble to its checksum: messages 1057, 1058 and 1060 of GPS, 1240, 1241 and 1243 of
+// Galileo, and 4076 of the IGS for both. `broadcast` has the ephemerides received until now, and `received` is the time of the
+// last epoch, which determines the week. In it and in observations, satellite n of GPS has the number n + `gps`, and satellite n
+// of Galileo n + `galileo`; a satellite whose number would exceed 255 is left out. Corrections of codes are not applied.
+//
+// Errors: `DAMAGED_MESSAGE` for a wrong checksum or another message, both of which occur in streams: continue with the next
+// frame; `NOT_FINITE`.
+kestirim_status kestirim_gnss_corrections_take(struct kestirim_gnss_corrections *corrections,
+                                               const struct kestirim_gnss_broadcast *broadcast,
+                                               const uint8_t *frame,
+                                               size_t length,
+                                               uint8_t gps,
+                                               uint8_t galileo,
+                                               const struct kestirim_gnss_time *received);
+
+// State of a satellite at the transmission of a signal, from its corrected ephemeris. `broadcast` has the ephemerides received
+// until now, by which the satellite may be unhealthy; `received` is the time of reception by
+// the receiver's clock, and `code` the code observation on the first carrier (m). The position is that of the antenna's phase
+// centre, so `antenna` must be null in the observation.
+//
+// Errors: `GAP` while no corrections of a received ephemeris serve at that time; `UNHEALTHY`; `NOT_FINITE`.
+kestirim_status kestirim_gnss_corrections_at(const struct kestirim_gnss_corrections *corrections,
+                                             const struct kestirim_gnss_broadcast *broadcast,
+                                             uint8_t satellite,
+                                             const struct kestirim_gnss_time *received,
+                                             double code,
+                                             struct kestirim_gnss_satellite *state);
 
 // State of a satellite at the transmission of a signal, from its precise orbit and clock. `time` is the time of
 // reception by the receiver's clock, `code` the code observation (m). The orbit is interpolated by the polynomial

@@ -4,6 +4,7 @@
 use core::ffi::c_void;
 
 use kestirim_gnss_message::{beidou, galileo, gps};
+use kestirim_gnss_ppp::SatelliteState;
 use kestirim_ppp_filter::{Broadcast, MessagePart, NoEphemeris};
 use kestirim_scalar::Components;
 
@@ -151,14 +152,19 @@ pub unsafe extern "C" fn kestirim_gnss_broadcast_at(
             NoEphemeris::Carriers => Status::NoGroupDelay,
             _ => Status::Gap,
         })?;
-        answer.write(GnssSatellite {
-            position: *found.position.as_array(),
-            velocity: *found.velocity.as_array(),
-            clock: found.clock,
-            clock_interval: found.clock_interval,
-            clock_distance: found.clock_distance,
-            accuracy: found.accuracy,
-        });
+        answer.write(satellite_state(&found));
         Ok(())
     })
+}
+
+/// A satellite's state as C has it.
+pub(crate) fn satellite_state(state: &SatelliteState) -> GnssSatellite {
+    GnssSatellite {
+        position: *state.position.as_array(),
+        velocity: *state.velocity.as_array(),
+        clock: state.clock,
+        clock_interval: state.clock_interval,
+        clock_distance: state.clock_distance,
+        accuracy: state.accuracy,
+    }
 }

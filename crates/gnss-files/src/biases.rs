@@ -117,6 +117,11 @@ impl Biases {
         Some([absolute(&biases, first?)?, absolute(&biases, second?)?])
     }
 
+    /// Whether no bias is known.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// Whether any phase bias is known.
     pub fn have_phases(&self) -> bool {
         self.0.values().flatten().any(|bias| bias.signal.phase)

@@ -17,6 +17,7 @@ mod open;
 mod orbits;
 mod received;
 mod satellites;
+mod ssr;
 mod streams;
 mod system;
 mod text;
@@ -40,6 +41,7 @@ pub use observations::{Carriers, Epoch, Observations, Observed, Signal, Signals}
 pub use ocean_loading::{OceanLoading, StationLoading};
 pub use orbits::{OrbitSample, Orbits};
 pub use received::Received;
+pub use ssr::{SsrClock, SsrCorrection, SsrHeader, SsrOrbit, SsrValues};
 pub use system::{System, satellite_name};
 pub use text::Text;
 pub use time::GpsTime;

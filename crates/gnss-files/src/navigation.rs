@@ -14,6 +14,7 @@ use self::record::{Layout, Record};
 use crate::error::{Error, Warning};
 use crate::fields::{blank_separated, decimal};
 use crate::satellites::PerSatellite;
+use crate::ssr::SsrCorrection;
 use crate::streams::Stream;
 use crate::text::{Line, Lines, Text};
 use crate::unserved::Unserved;
@@ -26,6 +27,8 @@ const NO_ORBIT: &str = "this record's orbit is no ellipse: it is left out";
 pub struct Navigation {
     /// Ephemerides of each message separately, as two messages of a Galileo satellite may hold for the same instant.
     messages: [PerSatellite<Ephemeris>; Message::ALL.len()],
+    /// Corrections of the ephemerides of GPS (LNAV) and Galileo (I/NAV) by a service, in the order of its stream.
+    pub corrections: Vec<SsrCorrection>,
     /// The coefficients of Klobuchar's ionosphere model as GPS broadcasts them: α in s, s per semicircle and so on,
     /// then β.
     pub ionosphere: Option<[[f64; 4]; 2]>,
@@ -58,11 +61,12 @@ impl Navigation {
         let mut files = Vec::new();
         for text in texts {
             let mut file = Vec::new();
+            let corrections = navigation.corrections.len();
             match Stream::of(text)? {
                 Some(stream) => navigation.take(text, stream, &mut file),
                 None => navigation.parse_file(text, &mut file)?,
             }
-            if file.is_empty() {
+            if file.is_empty() && navigation.corrections.len() == corrections {
                 let problem =
                     "expected ephemerides of satellites of GPS, Galileo or BeiDou, found none";
                 return Err(text.error(problem));
@@ -70,6 +74,10 @@ impl Navigation {
             files.push(file);
         }
         navigation.put(&files);
+        if let Some(text) = texts.first().filter(|_| navigation.is_empty()) {
+            let problem = "expected the ephemerides that the corrections refer to, found none";
+            return Err(text.error(problem));
+        }
         Ok(navigation)
     }
 
@@ -122,6 +130,7 @@ impl Navigation {
     fn take(&mut self, text: &Text, stream: Stream, found: &mut Vec<(u8, Ephemeris)>) {
         self.ionosphere = stream.ionosphere.or(self.ionosphere);
         self.skipped += stream.skipped;
+        self.corrections.extend(stream.corrections);
         self.warnings.extend(stream.warnings);
         self.tell(text, &stream.unread);
         let (orbits, others): (Vec<_>, Vec<_>) =

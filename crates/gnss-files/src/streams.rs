@@ -20,6 +20,7 @@ use crate::navigation::Ephemeris;
 use crate::observations::Raw;
 #[cfg(any(feature = "rtcm", feature = "ubx"))]
 use crate::observations::Signal;
+use crate::ssr::SsrCorrection;
 use crate::text::Text;
 use crate::time::GpsTime;
 use crate::unserved::Unserved;
@@ -36,6 +37,8 @@ pub(crate) struct Stream {
     pub(crate) channels: BTreeMap<u8, i8>,
     /// Ephemerides, with the numbers of their satellites.
     pub(crate) ephemerides: Vec<(u8, Ephemeris)>,
+    /// Corrections of ephemerides, in the order of the stream.
+    pub(crate) corrections: Vec<SsrCorrection>,
     /// The coefficients α and β of Klobuchar's model.
     pub(crate) ionosphere: Option<[[f64; 4]; 2]>,
     /// The number of messages passed over: other systems, other content.
@@ -67,6 +70,7 @@ impl Stream {
     pub(crate) fn take_broadcast(&mut self) -> Self {
         Self {
             ephemerides: take(&mut self.ephemerides),
+            corrections: take(&mut self.corrections),
             ionosphere: self.ionosphere.take(),
             skipped: take(&mut self.skipped),
             unread: take(&mut self.unread),

@@ -11,6 +11,11 @@ impl<'a> Bits<'a> {
         Self { bytes, place }
     }
 
+    /// The bit that is read next.
+    pub(crate) const fn place(&self) -> usize {
+        self.place
+    }
+
     /// Skips bits.
     pub const fn skip(&mut self, bits: usize) {
         self.place = self.place.saturating_add(bits);

@@ -83,9 +83,9 @@ fn frame(sent: i64) -> [Bits; 3] {
 fn numbers_are_where_other_programs_look_for_them() {
     let mut collector = Collector::new();
     let [first, second, third] = frame(345_600).map(|bits| bits.subframe());
-    assert_eq!(collector.take(first), None);
-    assert_eq!(collector.take(second), None);
-    let it = collector.take(third).expect("an ephemeris");
+    assert_eq!(collector.take(first, 0.0), None);
+    assert_eq!(collector.take(second, 0.0), None);
+    let it = collector.take(third, 0.0).expect("an ephemeris");
 
     let power = |value: f64, power| value * 2_f64.powi(power);
     assert_eq!((it.second, it.clock_second, it.issue), (86_400.0, 86_400.0, 9));
@@ -112,11 +112,14 @@ fn parts_of_two_frames_are_not_mixed() {
     let mut collector = Collector::new();
     let [first, second, third] = frame(604_788).map(|bits| bits.subframe());
     let [next_first, next_second, next_third] = frame(604_788 + 30).map(|bits| bits.subframe());
-    assert_eq!([second, third, next_first, next_second].map(|it| collector.take(it)), [None; 4]);
-    assert!(collector.take(next_third).is_some());
+    assert_eq!(
+        [second, third, next_first, next_second].map(|it| collector.take(it, 0.0)),
+        [None; 4]
+    );
+    assert!(collector.take(next_third, 0.0).is_some());
     // The third one of these begins with a week.
-    assert_eq!([first, second].map(|it| collector.take(it)), [None; 2]);
-    assert!(collector.take(third).is_some());
+    assert_eq!([first, second].map(|it| collector.take(it, 0.0)), [None; 2]);
+    assert!(collector.take(third, 0.0).is_some());
 }
 
 #[test]
@@ -132,7 +135,7 @@ fn what_is_unhealthy_says_so_and_almanacs_are_passed_over() {
     first.set(1, &[(42, 1)]);
     first.set(15, &[(48, 4)]);
     let parts = [Bits::of(4, 48), third, Bits::of(5, 54), first, Bits::of(0, 0), Bits::of(7, 0)];
-    assert!(parts.iter().all(|part| collector.take(part.subframe()).is_none()));
-    let it = collector.take(second.subframe()).expect("an ephemeris");
+    assert!(parts.iter().all(|part| collector.take(part.subframe(), 0.0).is_none()));
+    let it = collector.take(second.subframe(), 0.0).expect("an ephemeris");
     assert_eq!((it.is_healthy, it.accuracy), (false, None));
 }

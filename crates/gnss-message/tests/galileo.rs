@@ -83,7 +83,7 @@ fn words(issue: i64) -> [Bits; 5] {
 #[test]
 fn numbers_are_where_the_interface_document_has_them() {
     let mut collector = Collector::new();
-    let parts = words(123).map(|bits| collector.take(bits.word()));
+    let parts = words(123).map(|bits| collector.take(bits.word(), 0.0));
     let [None, None, None, None, Some(it)] = parts else { panic!("{parts:?}") };
 
     let power = |value: f64, power| value * 2_f64.powi(power);
@@ -111,7 +111,7 @@ fn health_and_validity_of_both_signals_count() {
         let mut parts = words(1);
         parts[4].set(1, (place, place));
         let mut collector = Collector::new();
-        let last = parts.map(|bits| collector.take(bits.word()))[4];
+        let last = parts.map(|bits| collector.take(bits.word(), 0.0))[4];
         assert!(!last.expect("an ephemeris").is_healthy, "bit {place}");
     }
 }
@@ -121,9 +121,9 @@ fn words_of_another_issue_wait_for_the_others() {
     let mut collector = Collector::new();
     let [first, second, third, fourth, fifth] = words(9).map(|bits| bits.word());
     let newer = words(10).map(|bits| bits.word());
-    let mixed = [fifth, fourth, third, newer[1], first].map(|it| collector.take(it));
+    let mixed = [fifth, fourth, third, newer[1], first].map(|it| collector.take(it, 0.0));
     assert_eq!(mixed, [None; 5]);
-    assert!(collector.take(second).is_some());
+    assert!(collector.take(second, 0.0).is_some());
 }
 
 #[test]

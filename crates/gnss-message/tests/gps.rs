@@ -76,8 +76,8 @@ fn subframes(issue: i64) -> [Bits; 3] {
 fn numbers_are_where_the_interface_specification_has_them() {
     let mut collector = Collector::new();
     let [first, second, third] = subframes(200).map(|bits| bits.subframe());
-    assert_eq!([third, first].map(|it| collector.take(it)), [None; 2]);
-    let it = collector.take(second).expect("an ephemeris");
+    assert_eq!([third, first].map(|it| collector.take(it, 0.0)), [None; 2]);
+    let it = collector.take(second, 0.0).expect("an ephemeris");
 
     let power = |value: f64, power| value * 2_f64.powi(power);
     assert_eq!((it.clock_second, it.second, it.issue), (388_800.0, 388_816.0, 200));
@@ -104,9 +104,20 @@ fn parts_of_two_issues_are_not_mixed() {
     let [first, second, third] = subframes(7).map(|bits| bits.subframe());
     let [next_first, next_second, next_third] = subframes(8).map(|bits| bits.subframe());
     let mixed = [first, next_second, third, second];
-    assert_eq!(mixed.map(|it| collector.take(it).is_some()), [false, false, false, true]);
+    assert_eq!(mixed.map(|it| collector.take(it, 0.0).is_some()), [false, false, false, true]);
     let mixed = [next_first, second, next_third, next_second];
-    assert_eq!(mixed.map(|it| collector.take(it).is_some()), [false, false, false, true]);
+    assert_eq!(mixed.map(|it| collector.take(it, 0.0).is_some()), [false, false, false, true]);
+}
+
+#[test]
+fn parts_before_a_long_silence_are_not_joined_with_those_after_it() {
+    let mut collector = Collector::new();
+    let [first, second, third] = subframes(7).map(|bits| bits.subframe());
+    let mut take = |part, now| collector.take(part, now).is_some();
+    assert!(!take(first, 0.0) && !take(second, 300.0) && take(third, 600.0));
+    assert!(!take(first, 606.0) && !take(second, 612.0) && !take(third, 913.0));
+    // A clock may be set back.
+    assert!(!take(first, 0.0) && !take(second, 6.0) && take(third, 12.0));
 }
 
 #[test]
@@ -115,7 +126,7 @@ fn a_satellite_is_unhealthy_by_its_health_or_an_alert() {
         let [mut first, second, third] = subframes(1);
         first.set(1, &[(place, place)]);
         let mut collector = Collector::new();
-        let parts = [first, second, third].map(|bits| collector.take(bits.subframe()));
+        let parts = [first, second, third].map(|bits| collector.take(bits.subframe(), 0.0));
         assert_eq!(parts[2].expect("an ephemeris").is_healthy, !alerted, "bit {place}");
     }
 }

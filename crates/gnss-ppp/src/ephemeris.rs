@@ -25,6 +25,8 @@ pub struct Ephemeris {
     /// The satellite's clock minus the time of its system, s, s/s and s/s², without the relativistic effect of the
     /// orbit's eccentricity: af0, af1, af2. For Galileo and BeiDou it is that of the two carriers that are observed.
     pub clock: [f64; 3],
+    /// The issue number, by which corrections refer to it: IODE or `IODnav`.
+    pub issue: u16,
     /// By how much the clock is ahead of that of the first carrier alone, s: `TGD` or `BGD`.
     pub group_delay: f64,
     /// The square root of the semi-major axis, √m: √A.
@@ -205,6 +207,7 @@ mod tests {
             time,
             clock_time: time,
             clock: [1.604_342_833_161e-5, 7.048_583_938_740e-12, 0.0],
+            issue: 0,
             group_delay: 5.122_274_160_385e-9,
             root_of_axis: 5_153.707_128_525,
             eccentricity: 1.000_394_229_777e-2,

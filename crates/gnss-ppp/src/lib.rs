@@ -21,6 +21,7 @@ mod signal;
 mod site;
 mod slip;
 mod solid_tide;
+mod ssr;
 mod time;
 mod trigonometry;
 mod troposphere;

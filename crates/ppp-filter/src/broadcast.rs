@@ -7,8 +7,7 @@ use kestirim_gnss_ppp::{
     Carriers, Ephemeris, GpsTime, Klobuchar, NavigationMessage, SatelliteState,
 };
 
-/// The time after which parts are not joined with those before, since numbers of issues repeat, and after which a
-/// satellite makes room for another, s.
+/// The time after which a satellite that was not heard makes room for another, s.
 const SILENCE: f64 = 300.0;
 /// The square root of the Earth's radius, √m.
 const LEAST_ROOT_OF_AXIS: f64 = 2_525.0;
@@ -115,14 +114,11 @@ impl<const N: usize> Broadcast<N> {
             self.ionosphere = Some(Klobuchar { alpha, beta });
         }
         let Some(satellite) = self.satellite(number, &part, received) else { return false };
-        if satellite.is_silent(received) {
-            satellite.parts = Parts::of(&part);
-        }
         satellite.heard = received;
         if !satellite.parts.are_of(&part) {
             *satellite = Satellite::new(number, &part, received);
         }
-        let Some((message, told)) = satellite.parts.take(part) else { return false };
+        let Some((message, told)) = satellite.parts.take(part, received) else { return false };
         satellite.newest = Some(Dated { message, told, received });
         true
     }
@@ -176,6 +172,21 @@ impl<const N: usize> Broadcast<N> {
         })
     }
 
+    /// The newest ephemeris of a satellite, with the clock of its own message.
+    ///
+    /// # Errors
+    /// [`NoEphemeris`]: the satellite must not be used.
+    pub(crate) fn newest(&self, number: u8) -> Result<Ephemeris, NoEphemeris> {
+        let satellite = self.satellites.iter().find(|it| it.number == number);
+        let dated = satellite.and_then(|it| it.newest.as_ref()).ok_or(NoEphemeris::Missing)?;
+        dated.ephemeris(match dated.message {
+            NavigationMessage::Lnav => Carriers::L1L2,
+            NavigationMessage::Inav => Carriers::E1E5b,
+            NavigationMessage::Fnav => Carriers::E1E5a,
+            NavigationMessage::D1 => Carriers::B1B3,
+        })
+    }
+
     /// The ionosphere model that GPS broadcasts, once it has been received.
     pub const fn ionosphere(&self) -> Option<&Klobuchar> {
         self.ionosphere.as_ref()
@@ -214,16 +225,21 @@ impl Parts {
         discriminant(self) == discriminant(&Self::of(part))
     }
 
-    fn take(&mut self, part: MessagePart) -> Option<(NavigationMessage, message::Ephemeris)> {
+    fn take(
+        &mut self,
+        part: MessagePart,
+        received: GpsTime,
+    ) -> Option<(NavigationMessage, message::Ephemeris)> {
+        let now = received.since(GpsTime::new(0, 0.0));
         match (self, part) {
             (Self::Gps(parts), MessagePart::Gps(part)) => {
-                Some((NavigationMessage::Lnav, parts.take(part)?))
+                Some((NavigationMessage::Lnav, parts.take(part, now)?))
             }
             (Self::Galileo(parts), MessagePart::Galileo(part)) => {
-                Some((NavigationMessage::Inav, parts.take(part)?))
+                Some((NavigationMessage::Inav, parts.take(part, now)?))
             }
             (Self::BeiDou(parts), MessagePart::BeiDou(part)) => {
-                Some((NavigationMessage::D1, parts.take(part)?))
+                Some((NavigationMessage::D1, parts.take(part, now)?))
             }
             _ => None,
         }
@@ -253,6 +269,7 @@ impl Dated {
             time: time.plus(behind),
             clock_time: clock_time.plus(behind),
             clock: [offset + clock.correction, drift, ageing],
+            issue: told.issue,
             group_delay: clock.group_delay,
             root_of_axis: told.root_of_axis,
             eccentricity: told.eccentricity,

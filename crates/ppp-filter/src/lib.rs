@@ -24,6 +24,7 @@ mod single_point;
 #[cfg(feature = "serde")]
 mod snapshot;
 mod solution;
+mod ssr;
 mod start;
 mod states;
 mod weighting;
@@ -37,5 +38,6 @@ pub use fixer::{AmbiguityFixer, FixedSolution, PhaseBias};
 pub use observation::SatelliteObservation;
 pub use single_point::{CodeObservation, single_point};
 pub use solution::{Contradiction, Health, SatelliteReport, Slipped, Solution};
+pub use ssr::{Corrected, Timed, corrected};
 pub use states::states;
 pub use weighting::{Lean, Weighting};

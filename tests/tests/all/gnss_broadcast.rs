@@ -7,6 +7,7 @@
 //! and pass; with `KESTIRIM_REQUIRE_DATA=1` they fail instead. With `--nocapture` each is printed.
 
 mod fit;
+pub(super) mod ssr;
 
 use std::path::{Path, PathBuf};
 
@@ -23,8 +24,10 @@ const KINEMATIC: Motion = Motion::Kinematic { process_noise: 100.0 };
 /// The time up to which ephemerides are fitted, s.
 const UNTIL: f64 = 82_800.0;
 
-/// The navigation file of ESBC's day, GPS and Galileo, fitted to precise products.
-pub(super) fn fitted_to_products(folder: &Path) -> String {
+pub(super) type Products = (Orbits, Clocks, Antennas);
+
+/// The precise products of ESBC's day, GPS and Galileo.
+pub(super) fn products(folder: &Path) -> Products {
     let path = |name: &str| -> PathBuf { folder.join("esbc2020177_multi").join(name) };
     let orbits = Orbits::read(&[
         path("GRG0MGXFIN_20201760000_01D_15M_ORB.SP3.gz"),
@@ -33,20 +36,29 @@ pub(super) fn fitted_to_products(folder: &Path) -> String {
     let clocks = Clocks::read(&[path("GRG0MGXFIN_20201770000_01D_30S_CLK.CLK.gz")]);
     let antennas =
         Antennas::read(&[folder.join("esbc2020177/esbc.atx.gz"), path("galileo_igs20.atx.gz")], "");
-    let (orbits, clocks, antennas) =
-        (orbits.expect("orbits"), clocks.expect("clocks"), antennas.expect("antennas"));
-    fit::navigation(59_025, &orbits, &clocks, &antennas)
+    (orbits.expect("orbits"), clocks.expect("clocks"), antennas.expect("antennas"))
 }
 
-/// The observations of a station with a navigation file instead of products.
-fn with_navigation(folder: &Path, station: Station, navigation: &str) -> Recording {
-    let file = tempfile::NamedTempFile::new().expect("a temporary file");
-    std::fs::write(file.path(), navigation).expect("a file can be written");
+/// The navigation file of ESBC's day, GPS and Galileo, fitted to precise products.
+pub(super) fn fitted_to_products(folder: &Path) -> String {
+    let (orbits, clocks, antennas) = products(folder);
+    fit::navigation(&fit::ephemerides(59_025, &orbits, &clocks, &antennas))
+}
+
+/// The observations of a station with files of ephemerides instead of products.
+fn with_navigation(folder: &Path, station: Station, files: &[&[u8]]) -> Recording {
+    let written = |bytes: &&[u8]| {
+        let file = tempfile::NamedTempFile::new().expect("a temporary file");
+        std::fs::write(file.path(), bytes).expect("a file can be written");
+        file
+    };
+    let files: Vec<_> = files.iter().map(written).collect();
+    let nav: Vec<_> = files.iter().map(|file| file.path().to_path_buf()).collect();
     let antennas: Vec<_> = ["esbc2020177/esbc.atx.gz"].map(|name| folder.join(name)).into();
     Recording::read(&Paths {
         obs: &folder.join(station.observations),
         sp3: &[],
-        nav: &[file.path().to_path_buf()],
+        nav: &nav,
         antex: &antennas,
         clk: &[],
         bias: &[],
@@ -82,8 +94,9 @@ fn followed(
     recording: &Recording,
     motion: Motion,
     method: Method,
+    until: f64,
 ) -> (Followed, [f64; 3]) {
-    let epochs = recording.epochs(Some(UNTIL));
+    let epochs = recording.epochs(Some(until));
     let receiver = recording.receiver(Corrections::ALL);
     let pass = Pass { method, ..Pass::default() };
     let found = follow(recording, epochs, &receiver, Config::new(motion), pass, &mut || ());
@@ -118,7 +131,7 @@ fn is_never_converged(followed: &Followed) {
 fn a_day_of_fitted_ephemerides() {
     let Some(folder) = folder_of("gnss") else { return };
     let navigation = fitted_to_products(&folder);
-    let fitted = with_navigation(&folder, ESBC_MULTI, &navigation);
+    let fitted = with_navigation(&folder, ESBC_MULTI, &[navigation.as_bytes()]);
     let precise = ESBC_MULTI.read(&folder);
     let all: Vec<f64> = (precise.epochs(Some(UNTIL)).iter().step_by(10))
         .flat_map(|epoch| off(&fitted, &precise, epoch))
@@ -129,7 +142,7 @@ fn a_day_of_fitted_ephemerides() {
         all.len()
     );
     assert!(all.len() > 4_000 && rms(&all) < 0.1);
-    let run = |what, motion, method| followed(what, &fitted, motion, method);
+    let run = |what, motion, method| followed(what, &fitted, motion, method, UNTIL);
     for (what, motion, method, most) in [
         ("single", Motion::Static, Method::Single, 2.0),
         ("static", Motion::Static, Method::Filter, 0.5),

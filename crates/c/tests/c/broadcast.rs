@@ -12,12 +12,12 @@ use kestirim_gnss_message::gps::Subframe;
 use kestirim_gnss_ppp::{Carriers, GpsTime};
 use kestirim_ppp_filter::{Broadcast, MessagePart};
 
-static NOON: GnssTime = GnssTime { day: 59_025, second: 43_200.0 };
-const CODE: f64 = 21e6;
+pub(super) static NOON: GnssTime = GnssTime { day: 59_025, second: 43_200.0 };
+pub(super) const CODE: f64 = 21e6;
 
 /// The words of a subframe of LNAV: of noon of a Thursday, issue 0, with orbit and clock by chance. The sixth bit of health is set of an
 /// unhealthy satellite.
-fn words(number: u32, unhealthy: bool) -> [u32; 10] {
+pub(super) fn words(number: u32, unhealthy: bool) -> [u32; 10] {
     let mut state = 0x9E37_79B9_u32 ^ number;
     let mut words = [(); 10].map(|()| {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -61,15 +61,20 @@ fn take(broadcast: *mut GnssBroadcast, satellite: u8, words: &[u32]) -> (Status,
     (status, complete)
 }
 
-fn at(broadcast: *const GnssBroadcast, satellite: u8, on: u32) -> Result<GnssSatellite, Status> {
-    let mut state = GnssSatellite {
+/// A state that nothing was written to.
+pub(super) const fn nowhere() -> GnssSatellite {
+    GnssSatellite {
         position: [0.0; 3],
         velocity: [0.0; 3],
         clock: 0.0,
         clock_interval: 0.0,
         clock_distance: 0.0,
         accuracy: 0.0,
-    };
+    }
+}
+
+fn at(broadcast: *const GnssBroadcast, satellite: u8, on: u32) -> Result<GnssSatellite, Status> {
+    let mut state = nowhere();
     // SAFETY: memory of this test's.
     let status = unsafe {
         kestirim_gnss_broadcast_at(broadcast, satellite, on, &raw const NOON, CODE, &raw mut state)

@@ -5,6 +5,7 @@
 //! is a failure, with `KESTIRIM_REQUIRE_DATA=1` missing recordings are.
 
 mod broadcast;
+mod corrections;
 mod header;
 mod pointers;
 mod programs;

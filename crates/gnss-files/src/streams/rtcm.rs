@@ -1,4 +1,5 @@
-//! RTCM 3: observations (MSM4 and MSM7) and ephemerides (1019, 1042, 1045, 1046).
+//! RTCM 3: observations (MSM4 and MSM7), ephemerides (1019, 1042, 1045, 1046), and corrections of ephemerides (SSR: 1057 to 1060,
+//! 1240 to 1243, 4076).
 
 mod ephemerides;
 mod glonass;
@@ -6,6 +7,7 @@ mod lock_times;
 mod passed_over;
 mod weeks;
 
+use kestirim_gnss_message::ssr;
 use rtcm_rs::prelude::*;
 
 use self::ephemerides::{beidou, fnav, gps, inav};
@@ -18,6 +20,7 @@ use crate::biases::SPEED_OF_LIGHT;
 use crate::error::Error;
 use crate::navigation::{Ephemeris, time_of_week};
 use crate::observations::{Raw, Signal};
+use crate::ssr::SsrCorrection;
 use crate::system::System;
 use crate::text::Text;
 use crate::time::GpsTime;
@@ -119,6 +122,10 @@ macro_rules! long_cells {
 
 impl Reader {
     fn take(&mut self, frame: &MessageFrame<'_>) {
+        // The decoder of the other messages knows neither those of Galileo nor those of the IGS.
+        if let Some(message) = ssr::Message::from_data(frame.data()) {
+            return self.stream.corrections.extend(SsrCorrection::of(message));
+        }
         let behind = (1e3 * GpsTime::BEIDOU_BEHIND) as i64;
         let of_beidou = |time: u32| (i64::from(time) + behind).rem_euclid(WEEK_MS);
         match &frame.get_message() {

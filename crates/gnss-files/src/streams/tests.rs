@@ -2,6 +2,8 @@
 
 #[cfg(feature = "rtcm")]
 mod rtcm;
+#[cfg(feature = "rtcm")]
+mod ssr;
 #[cfg(feature = "ubx")]
 mod ubx;
 

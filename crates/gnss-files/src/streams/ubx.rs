@@ -41,8 +41,6 @@ const D1: [u8; 3] = [0, 2, 4];
 /// number for that of RINEX.
 const OTHERS: [(u8, u8, u8); 5] =
     [(1, b'S', 100), (3, b'C', 0), (5, b'J', 0), (6, b'R', 0), (7, b'I', 0)];
-/// The time after which parts of a message are not joined with those before, s: numbers of issues repeat.
-const SILENCE: f64 = 300.0;
 /// The length of a week, days.
 const WEEK: i32 = 7;
 /// The satellite numbers of GPS whose navigation messages are read.
@@ -195,22 +193,14 @@ impl Reader {
     }
 }
 
-/// The parts of one satellite, and the time of the last one.
-type Parts<P, const N: usize> = (Collector<P, N>, GpsTime);
-
 /// Adds a part, which came at an instant, to those of its satellite.
 fn collect<P: kestirim_gnss_message::Part<N>, const N: usize>(
-    satellites: &mut BTreeMap<u8, Parts<P, N>>,
+    satellites: &mut BTreeMap<u8, Collector<P, N>>,
     number: u8,
     part: P,
     now: GpsTime,
 ) -> Option<kestirim_gnss_message::Ephemeris> {
-    let (parts, heard) = satellites.entry(number).or_insert((Collector::new(), now));
-    if now.since(*heard).abs() > SILENCE {
-        *parts = Collector::new();
-    }
-    *heard = now;
-    parts.take(part)
+    satellites.entry(number).or_default().take(part, now.since(GpsTime::EPOCH))
 }
 
 /// The first words of a message; `None` if there are fewer.

@@ -5,8 +5,13 @@ use kestirim_gnss_ppp::{Carriers, GpsTime};
 use kestirim_ppp_filter::{Broadcast, MessagePart, NoEphemeris};
 
 /// A Sunday, on which a week of GPS began.
-const SUNDAY: i32 = 59_021;
-const CODE: f64 = 22e6;
+pub(super) const SUNDAY: i32 = 59_021;
+pub(super) const CODE: f64 = 22e6;
+
+/// The issue of an ephemeris for a second of the week.
+pub(super) const fn issue(second: u32) -> u64 {
+    ((second / 16) & 0xff) as u64
+}
 
 /// A subframe of LNAV, of a circular orbit of GPS at a second of the week (a multiple of 16), with a health.
 fn subframe(number: u32, second: u32, health: u32) -> MessagePart {
@@ -14,22 +19,24 @@ fn subframe(number: u32, second: u32, health: u32) -> MessagePart {
     words[0] = 0x8b << 22;
     words[1] = number << 8;
     let (time, root) = (second / 16, 5_153 << 19);
+    let issue = (issue(second) as u32) << 22;
     match number {
         1 => {
             words[2] = health << 8;
-            words[7] = time << 6;
+            words[7] = issue | time << 6;
         }
         2 => {
+            words[2] = issue;
             words[7] = (root >> 24) << 6;
             words[8] = (root & 0xff_ffff) << 6;
             words[9] = time << 14;
         }
-        _ => {}
+        _ => words[9] = issue,
     }
     MessagePart::Gps(gps::Subframe::from_words(&words).expect("LNAV"))
 }
 
-fn hear<const N: usize>(
+pub(super) fn hear<const N: usize>(
     broadcast: &mut Broadcast<N>,
     satellite: u8,
     second: u32,

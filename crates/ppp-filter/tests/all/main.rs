@@ -6,4 +6,5 @@ mod lean;
 mod moved;
 mod single_point;
 mod sky;
+mod ssr;
 mod systems;

@@ -1,20 +1,25 @@
 //! Broadcast ephemerides, as the filter needs them: a satellite's state at an instant, with the accuracy that the
-//! satellite itself states.
+//! satellite itself states, or that of a service's corrections.
 
 use std::collections::BTreeMap;
 
-use kestirim_gnss_files::{Message, Navigation, Signals};
+use kestirim_gnss_files::{Message, Navigation, Signal, Signals};
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
-use kestirim_gnss_ppp::{Carriers, Ephemeris, GpsTime, Klobuchar, SatelliteState};
+use kestirim_gnss_ppp::{Carriers, Constellation, Ephemeris, GpsTime, Klobuchar, SatelliteState};
 
 use super::model;
 use super::products::Unusable;
+use super::ssr::Ssr;
 
 /// The ephemerides of the satellites that were observed.
 #[derive(Debug, Default)]
 pub struct Broadcast {
     satellites: BTreeMap<u8, Own>,
     ionosphere: Option<Klobuchar>,
+    /// Corrections by a service: without those of its orbit and clock, no satellite is used.
+    ssr: Option<Ssr>,
+    /// Whether codes are corrected, too.
+    with_codes: bool,
 }
 
 /// The ephemerides of one satellite, including unhealthy ones: an earlier one does not serve in place of those.
@@ -24,6 +29,10 @@ struct Own {
     first: Vec<Ephemeris>,
     /// The ephemerides of another message, whose orbits are the same.
     other: Vec<Ephemeris>,
+    /// The ephemerides to which corrections refer, with the clock as it is broadcast.
+    corrected: Vec<Ephemeris>,
+    /// The observed codes.
+    codes: [Option<Signal>; 2],
 }
 
 impl Own {
@@ -53,25 +62,42 @@ const fn serves(ephemeris: &Ephemeris) -> bool {
 }
 
 impl Broadcast {
-    /// The ephemerides for the observed signals of each satellite.
-    pub(super) fn new(navigation: &Navigation, signals: &BTreeMap<u8, Signals>) -> Self {
+    /// The ephemerides for the observed signals of each satellite, and corrections from around `start`; those of codes are for
+    /// codes that nothing else has corrected.
+    pub(super) fn new(
+        navigation: &Navigation,
+        signals: &BTreeMap<u8, Signals>,
+        start: GpsTime,
+        with_codes: bool,
+    ) -> Self {
         let mut broadcast = Self {
             ionosphere: navigation.ionosphere.map(|[alpha, beta]| Klobuchar { alpha, beta }),
+            ssr: Ssr::new(navigation, start),
+            with_codes,
             ..Self::default()
         };
         for (&satellite, signals) in signals {
             let carriers = model::carriers(signals.carriers);
-            let of = |message| {
+            let on = |message, carriers| -> Vec<_> {
                 let told = navigation.satellite(satellite, message).iter();
                 told.filter_map(|ephemeris| model::ephemeris(ephemeris, carriers)).collect()
             };
+            let of = |message| on(message, carriers);
             let own = match carriers {
                 Carriers::L1L2 => Own { first: of(Message::Lnav), ..Own::default() },
-                Carriers::E1E5a => Own { first: of(Message::Fnav), other: of(Message::Inav) },
+                Carriers::E1E5a => {
+                    Own { first: of(Message::Fnav), other: of(Message::Inav), ..Own::default() }
+                }
                 Carriers::E1E5b => Own { first: of(Message::Inav), ..Own::default() },
                 Carriers::B1B3 | Carriers::B1B2 => Own { first: of(Message::D1), ..Own::default() },
                 Carriers::G1G2 { .. } | Carriers::B1cB2a => Own::default(),
             };
+            let corrected = match carriers.constellation() {
+                Constellation::Gps => on(Message::Lnav, Carriers::L1L2),
+                Constellation::Galileo => on(Message::Inav, Carriers::E1E5b),
+                Constellation::Glonass | Constellation::BeiDou => Vec::new(),
+            };
+            let own = Own { corrected, codes: signals.code, ..own };
             broadcast.satellites.insert(satellite, own);
         }
         broadcast
@@ -88,6 +114,12 @@ impl Broadcast {
         let sent = time.plus(-code / SPEED_OF_LIGHT);
         let own = self.satellites.get(&satellite).ok_or(Unusable::NoOrbit)?;
         let ephemeris = own.at(sent).ok_or(Unusable::NoOrbit)?;
+        if let Some(ssr) = &self.ssr {
+            let state = ssr.state(satellite, &own.corrected, sent).ok_or(Unusable::NoClock)?;
+            // A corrected code refers to the service's clock by itself.
+            let is_corrected = self.of_codes(satellite, sent).is_some();
+            return Ok((state, if is_corrected { 0.0 } else { ephemeris.group_delay }));
+        }
         let clock = ephemeris.clock_at(sent);
         let orbit = ephemeris.orbit_at(sent.plus(-clock));
         let state = SatelliteState {
@@ -101,10 +133,28 @@ impl Broadcast {
         Ok((state, ephemeris.group_delay))
     }
 
-    /// Whether there is any ephemeris for the observed signals of a satellite.
+    /// What is to be added to the codes of a satellite, m, if it is known.
+    pub(super) fn of_codes(&self, satellite: u8, time: GpsTime) -> Option<[f64; 2]> {
+        let ssr = self.ssr.as_ref().filter(|_| self.with_codes)?;
+        ssr.of_codes(satellite, self.satellites.get(&satellite)?.codes, time)
+    }
+
+    /// Whether there is any ephemeris for the observed signals of a satellite, and any correction if there are some.
     pub(super) fn knows(&self, satellite: u8) -> bool {
-        let own = self.satellites.get(&satellite);
-        own.is_some_and(|own| !own.first.is_empty() || !own.other.is_empty())
+        self.satellites.get(&satellite).is_some_and(|own| match &self.ssr {
+            Some(ssr) => !own.corrected.is_empty() && ssr.knows(satellite),
+            None => !own.first.is_empty() || !own.other.is_empty(),
+        })
+    }
+
+    /// Whether the codes of any satellite are corrected at a time.
+    pub(super) fn has_codes_at(&self, time: GpsTime) -> bool {
+        self.satellites.keys().any(|satellite| self.of_codes(*satellite, time).is_some())
+    }
+
+    /// The corrections, if there are any.
+    pub(super) const fn ssr(&self) -> Option<&Ssr> {
+        self.ssr.as_ref()
     }
 
     /// The broadcast ionosphere model, if there is one.
@@ -166,7 +216,7 @@ mod tests {
         };
         let [lnav, fnav, inav] = [Message::Lnav, Message::Fnav, Message::Inav].map(of);
         let own = if lnav.is_empty() {
-            Own { first: fnav, other: inav }
+            Own { first: fnav, other: inav, ..Own::default() }
         } else {
             Own { first: lnav, ..Own::default() }
         };

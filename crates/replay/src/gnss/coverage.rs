@@ -73,10 +73,11 @@ pub(super) fn without_ephemerides(
     let left_out: BTreeSet<u8> = others.copied().filter(|it| !broadcast.knows(*it)).collect();
     if !left_out.is_empty() {
         let names = names(left_out.iter().copied());
-        warnings.push((
-            None,
-            format!("{names} are left out: ephemerides for their signals are not known"),
-        ));
+        let what = match broadcast.ssr() {
+            Some(_) => "ephemerides for their signals, or corrections of these,",
+            None => "ephemerides for their signals",
+        };
+        warnings.push((None, format!("{names} are left out: {what} are not known")));
     }
     left_out
 }

@@ -43,7 +43,7 @@ pub(super) fn clock_sample(reference: GpsTime, instant: files::GpsTime, bias: f6
 /// Converts an ephemeris to the clock of two carriers; `None` if the group delay between its own carriers and these is
 /// not given. The accuracy is infinite if the satellite declares itself unhealthy or states none: such an ephemeris
 /// must not be used.
-pub(super) fn ephemeris(told: &files::Ephemeris, carriers: Carriers) -> Option<Ephemeris> {
+pub fn ephemeris(told: &files::Ephemeris, carriers: Carriers) -> Option<Ephemeris> {
     let message = match told.message {
         Message::Lnav => NavigationMessage::Lnav,
         Message::Inav => NavigationMessage::Inav,
@@ -58,6 +58,7 @@ pub(super) fn ephemeris(told: &files::Ephemeris, carriers: Carriers) -> Option<E
         time: time(told.time),
         clock_time: time(told.clock_time),
         clock: [offset + clock.correction, drift, ageing],
+        issue: told.issue,
         group_delay: clock.group_delay,
         root_of_axis: told.root_of_axis,
         eccentricity: told.eccentricity,

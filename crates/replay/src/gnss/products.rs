@@ -154,10 +154,11 @@ impl Products {
             return Err(Unusable::Incomplete);
         };
         let (state, _) = self.state(observed.prn, time, first)?;
+        let [of_first, of_second] = self.of_codes(observed.prn, time);
         Ok(SatelliteObservation {
             satellite: observed.prn,
             carriers: carriers(observed.carriers),
-            code: [first, second],
+            code: [first + of_first, second + of_second],
             phase: [l1, l2],
             lock_lost: observed.loss_of_lock.contains(&true),
             state,
@@ -176,14 +177,22 @@ impl Products {
     ) -> Result<CodeObservation<'_>, Unusable> {
         let first = observed.code[0].ok_or(Unusable::Incomplete)?;
         let (state, group_delay) = self.state(observed.prn, time, first)?;
+        let [of_first, of_second] = self.of_codes(observed.prn, time);
+        let [first, second] = observed.code;
         Ok(CodeObservation {
             satellite: observed.prn,
             carriers: carriers(observed.carriers),
-            code: observed.code,
+            code: [first.map(|it| it + of_first), second.map(|it| it + of_second)],
             group_delay,
             state,
             antenna: self.antenna(observed),
         })
+    }
+
+    /// What a service's corrections add to the codes of a satellite, m.
+    fn of_codes(&self, number: u8, time: GpsTime) -> [f64; 2] {
+        let broadcast = self.broadcast.as_ref();
+        broadcast.and_then(|broadcast| broadcast.of_codes(number, time)).unwrap_or_default()
     }
 
     /// The edition of the antenna model used for a satellite, if it is stated.

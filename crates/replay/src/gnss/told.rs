@@ -88,9 +88,12 @@ impl Told {
                 Served { products, left_out, span: coverage::span(orbits, midnight) }
             }
             Self::Broadcast(navigation) => {
-                let broadcast = Broadcast::new(navigation, &observations.signals);
-                let sentence = "orbits and clocks are those that the satellites broadcast: positions are good to metres";
-                warnings.push((None, sentence.to_owned()));
+                let (start_time, with_codes) = (model::time(start), biases.is_empty());
+                let signals = &observations.signals;
+                let broadcast = Broadcast::new(navigation, signals, start_time, with_codes);
+                let are_corrected = !with_codes || broadcast.has_codes_at(start_time);
+                let sentences = quality(&broadcast, are_corrected);
+                warnings.extend(sentences.map(|sentence| (None, sentence)));
                 let disowned: Vec<_> = broadcast.disowned().collect();
                 if !disowned.is_empty() {
                     let names = names(disowned);
@@ -108,4 +111,22 @@ impl Told {
             }
         }
     }
+}
+
+/// Sentences about how good orbits and clocks are that the satellites broadcast, for codes whose biases are corrected or not.
+fn quality(broadcast: &Broadcast, are_corrected: bool) -> impl Iterator<Item = String> {
+    let Some(ssr) = broadcast.ssr() else {
+        let sentence = "orbits and clocks are those that the satellites broadcast: positions are good to metres";
+        return [Some(sentence.to_owned()), None, None].into_iter().flatten();
+    };
+    let (service, solution) = ssr.provider;
+    let corrected = format!(
+        "orbits and clocks are those that the satellites broadcast, corrected by service {service}, solution {solution}: as good as that service is"
+    );
+    let several = "there are corrections of other services or solutions, which are not used";
+    let codes =
+        "biases of the observed codes are not corrected: positions take longer to become good";
+    let several = ssr.are_several.then(|| several.to_owned());
+    let codes = (!are_corrected).then(|| codes.to_owned());
+    [Some(corrected), several, codes].into_iter().flatten()
 }

@@ -56,7 +56,7 @@ impl System for Gnss {
         .live(),
         FileField::optional(
             "nav",
-            "Where there are no precise orbits: what the satellites broadcast, RINEX navigation 2, 3 or 4, one file or more; positions are good to metres then",
+            "Where there are no precise orbits: what the satellites broadcast, RINEX navigation 2, 3 or 4, or a recorded stream, one file or more; positions are good to metres then, or as good as a service whose corrections are in a stream (SSR in RTCM 3)",
         )
         .several()
         .live(),

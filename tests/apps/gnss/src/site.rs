@@ -73,7 +73,7 @@ pub fn config() -> Config<Lean> {
     config.with_estimator(Estimator::at_rest())
 }
 
-/// The configuration for the same station with broadcast ephemerides instead of products.
+/// The configuration for the same station with broadcast ephemerides, corrected or not, instead of products.
 pub fn without_products() -> Config<Lean> {
     Config::broadcast(Motion::Static).with_estimator(Estimator::at_rest())
 }

@@ -1,10 +1,12 @@
 //! Calls everything of `kestirim-gnss-message`.
 
 use kestirim_gnss_message::accuracy::{sisa, ura};
-use kestirim_gnss_message::{Bits, Collector, Ephemeris, Part, beidou, crc_24q};
-use kestirim_gnss_message::{galileo, gps};
+use kestirim_gnss_message::{
+    Bits, Collector, Ephemeris, Part, beidou, crc_24q, frame_data, frame_length,
+};
+use kestirim_gnss_message::{galileo, gps, ssr};
 
-use super::values::{any, call_each, keep, one_of, slice, whole};
+use super::values::{any, call_each, keep, number, one_of, slice, whole};
 
 fn words<const N: usize>() -> [u32; N] {
     any([(); N].map(|()| whole()))
@@ -27,6 +29,10 @@ fn bits() {
     keep(Bits::signed(&mut bits, usize::from(whole::<u8>() % 64), i32::from(whole::<i8>())));
     keep(Bits::unsigned(&mut bits, usize::from(whole::<u8>() % 65), i32::from(whole::<i8>())));
     keep(crc_24q(slice(&bytes)));
+    let mut frame = bytes;
+    [frame[0], frame[1], frame[2]] = [0xd3, 0, one_of([0, 1])];
+    keep(frame_length(slice(&frame)));
+    keep(frame_data(slice(&frame)));
     keep(ura(whole()));
     keep(sisa(whole()));
 }
@@ -38,7 +44,7 @@ fn collected<P: Part<N>, const N: usize>(part: impl Fn() -> Option<P>) {
         let Some(part) = part() else { continue };
         keep(<P as Part<N>>::number(&part));
         keep(<P as Part<N>>::ephemeris(&[part; N]));
-        let ephemeris: Option<Ephemeris> = Collector::take(&mut collector, part);
+        let ephemeris: Option<Ephemeris> = Collector::take(&mut collector, part, number());
         keep(ephemeris);
     }
 }
@@ -53,7 +59,30 @@ fn subframes() {
     collected(|| galileo::Word::from_page(&words()));
 }
 
+/// A message with corrections, in most cases.
+fn corrections() {
+    let mut bytes: [u8; 64] = any([(); 64].map(|()| whole()));
+    let kind: u16 = one_of([1057, 1058, 1059, 1060, 1240, 1241, 1242, 1243, 4076]);
+    bytes[0] = (kind >> 4) as u8;
+    bytes[1] = (kind << 4) as u8 | bytes[1] & 15;
+    let Some(message) = ssr::Message::from_data(slice(&bytes)) else { return };
+    let header: ssr::Header = message.header;
+    keep(header);
+    let corrections: ssr::Corrections<'_> = ssr::Message::corrections(&message);
+    for (satellite, correction) in corrections {
+        keep(satellite);
+        match correction {
+            ssr::Correction::Orbit(orbit) => {
+                keep(ssr::Orbit::is_of(&orbit, whole()));
+                keep(ssr::Orbit::at(&orbit, number()));
+            }
+            ssr::Correction::Clock(clock) => keep(ssr::Clock::at(&clock, number())),
+            ssr::Correction::Code { signal, bias } => keep((signal, bias)),
+        }
+    }
+}
+
 /// Calls everything in this module.
 pub fn run() {
-    call_each([bits, subframes]);
+    call_each([bits, subframes, corrections]);
 }

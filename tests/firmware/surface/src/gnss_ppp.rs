@@ -3,9 +3,10 @@
 use kestirim_gnss_ppp::{
     Arc, Bodies, BodyAxes, Carriers, Clock, ClockReference, ClockSample, Constellation, Correction,
     Corrections, Direction, Ephemeris, Geodetic, GpsTime, Klobuchar, NavigationMessage,
-    OceanLoading, Orbit, OrbitSample, Pattern, Receiver, SatelliteState, Site, SlipLimits,
-    Troposphere, carried_along, eccentricity_clock, gradient_mapping, greenwich_sidereal_time,
-    pole_tide, sagnac, shapiro_delay, solid_tide, wind_up, zenith_hydrostatic, zenith_wet,
+    OceanLoading, Orbit, OrbitSample, OrbitState, Pattern, Receiver, SatelliteState, Site,
+    SlipLimits, Troposphere, carried_along, eccentricity_clock, gradient_mapping,
+    greenwich_sidereal_time, pole_tide, sagnac, shapiro_delay, solid_tide, wind_up,
+    zenith_hydrostatic, zenith_wet,
 };
 use nalgebra::Vector3;
 
@@ -107,12 +108,14 @@ fn satellites() {
     keep(wind_up(&axes(), &matrix(), &matrix(), option()));
 }
 
-fn broadcast() {
-    let ephemeris = Ephemeris {
+/// Any ephemeris.
+pub(super) fn ephemeris() -> Ephemeris {
+    Ephemeris {
         constellation: one_of(Constellation::ALL),
         time: time(),
         clock_time: time(),
         clock: numbers(),
+        issue: whole(),
         group_delay: number(),
         root_of_axis: number(),
         eccentricity: number(),
@@ -128,12 +131,16 @@ fn broadcast() {
         inclination_terms: numbers(),
         accuracy: number(),
         holds: number(),
-    };
-    let all = any([ephemeris; 3]);
+    }
+}
+
+fn broadcast() {
+    let all = any([ephemeris(); 3]);
     if let Some(ephemeris) = any(Ephemeris::nearest(slice(&all), time())) {
         keep(Ephemeris::holds_at(ephemeris, time()));
         keep(Ephemeris::clock_at(ephemeris, time()));
-        keep(Ephemeris::orbit_at(ephemeris, time()));
+        let orbit = any(Ephemeris::orbit_at(ephemeris, time()));
+        keep(OrbitState::corrected(&orbit, numbers()));
     }
     let ionosphere = any(Klobuchar { alpha: numbers(), beta: numbers() });
     keep(Klobuchar::delay(&ionosphere, &place(), &direction(), time()));

@@ -2,19 +2,20 @@
 
 use core::fmt::Debug;
 
-use kestirim_gnss_message::{beidou, galileo, gps};
+use kestirim_gnss_message::{beidou, galileo, gps, ssr};
 use kestirim_gnss_ppp::{
     Carriers, Corrections, GpsTime, Klobuchar, OceanLoading, Pattern, Receiver, SatelliteState,
     SlipLimits,
 };
 use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_ppp_filter::{
-    AmbiguityFixer, Broadcast, CodeObservation, Config, Deviation, Error, Estimator, Health,
-    MessagePart, Motion, PhaseBias, PppFilter, SatelliteObservation, Solution, Weighting,
-    single_point, states,
+    AmbiguityFixer, Broadcast, CodeObservation, Config, Corrected, Deviation, Error, Estimator,
+    Health, MessagePart, Motion, PhaseBias, PppFilter, SatelliteObservation, Solution, Timed,
+    Weighting, corrected, single_point, states,
 };
 use kestirim_robust_kalman::{Decision, Measurement};
 
+use super::gnss_ppp::ephemeris;
 use super::values::{
     any, call_each, keep, matrix, maybe, number, numbers, one_of, rounds, slice, try_on, whole,
     yes_or_no,
@@ -132,6 +133,8 @@ fn filters<const N: usize, R: Weighting + Debug>(estimator: fn() -> Estimator<R>
 fn broadcast<const N: usize>() {
     keep(<Broadcast<N> as Default>::default());
     let mut broadcast = any(Broadcast::<N>::new());
+    keep(<Corrected<N> as Default>::default());
+    let mut corrected = any(Corrected::<N>::new());
     for _ in 0..rounds() {
         let [mut words, mut other]: [[u32; 10]; 2] = [[whole(); 10], [whole(); 10]];
         words[0] = 0x8b << 22;
@@ -148,6 +151,35 @@ fn broadcast<const N: usize>() {
         let carriers = one_of([Carriers::L1L2, Carriers::E1E5a, Carriers::B1B3]);
         keep(Broadcast::state(&broadcast, one_of([1, 2, 3, 4, 5]), carriers, time, number()));
         keep(Broadcast::ionosphere(&broadcast));
+        take_corrections(&mut corrected, &broadcast, time);
+    }
+}
+
+fn take_corrections<const N: usize>(
+    collected: &mut Corrected<N>,
+    broadcast: &Broadcast<N>,
+    time: GpsTime,
+) {
+    let mut bytes: [u8; 64] = any([(); 64].map(|()| whole()));
+    // Messages 1060 and 1243.
+    [bytes[0], bytes[1]] = one_of([[0x42, 0x40], [0x4d, 0xb0]]);
+    let Some(message) = ssr::Message::from_data(slice(&bytes)) else { return };
+    Corrected::take(collected, &message, |it| (it < 6).then_some(it), broadcast, time);
+    keep(Corrected::state(collected, one_of([1, 2, 3, 4, 5]), broadcast, time, number()));
+    let (mut orbits, mut clocks) = (None, None);
+    for (_, correction) in message.corrections() {
+        match correction {
+            ssr::Correction::Orbit(orbit) => orbits = Some(orbit),
+            ssr::Correction::Clock(clock) => clocks = Some(clock),
+            ssr::Correction::Code { .. } => {}
+        }
+    }
+    if let (Some(orbit), Some(clock)) = (orbits, clocks) {
+        let orbit = Timed::new(time, &message.header, orbit);
+        let clock = Timed::new(time, &message.header, clock);
+        keep(Timed::since(&orbit));
+        keep(Timed::serves_at(&clock, time));
+        keep(corrected(&ephemeris(), &orbit, &clock, time));
     }
 }
 

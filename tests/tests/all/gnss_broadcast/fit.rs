@@ -22,39 +22,51 @@ const NUMBERS: usize = 15;
 const CHANGES: [f64; NUMBERS] =
     [1e-3, 1e-7, 1e-7, 1e-11, 1e-7, 1e-7, 1e-11, 1e-7, 1e-11, 1e-7, 1e-7, 1.0, 1.0, 1e-7, 1e-7];
 
-/// The navigation file of a day (modified Julian date), with the satellites that orbits, clocks and antennas contain.
-pub(super) fn navigation(
+/// The ephemerides of a day (modified Julian date), each with the number of its satellite, for the satellites that orbits,
+/// clocks and antennas contain.
+pub(super) fn ephemerides(
     day: i32,
     orbits: &Orbits,
     clocks: &Clocks,
     antennas: &Antennas,
-) -> String {
+) -> Vec<(u8, Ephemeris)> {
+    let of_satellite = |number| {
+        let precise = Precise { number, orbits, clocks, antennas };
+        let fit = move |step| precise.fit(GpsTime::new(day, INTERVAL * f64::from(step)), step);
+        (0..=12).filter_map(fit).map(move |ephemeris| (number, ephemeris))
+    };
+    clocks.satellites().flat_map(of_satellite).collect()
+}
+
+/// A navigation file.
+pub(super) fn navigation(ephemerides: &[(u8, Ephemeris)]) -> String {
     let mut text = header("     3.05           NAVIGATION DATA     MIXED", "RINEX VERSION / TYPE");
     text += &header("", "END OF HEADER");
-    for number in clocks.satellites() {
-        for step in 0..=12 {
-            let time = GpsTime::new(day, INTERVAL * f64::from(step));
-            let precise = Precise { number, orbits, clocks, antennas };
-            if let Some(ephemeris) = precise.fit(time) {
-                write(&mut text, number, &ephemeris);
-            }
-        }
+    for (number, ephemeris) in ephemerides {
+        write(&mut text, *number, ephemeris);
     }
     text
 }
 
-struct Precise<'a> {
-    number: u8,
-    orbits: &'a Orbits,
-    clocks: &'a Clocks,
-    antennas: &'a Antennas,
+/// The precise products of one satellite.
+pub(super) struct Precise<'a> {
+    pub(super) number: u8,
+    pub(super) orbits: &'a Orbits,
+    pub(super) clocks: &'a Clocks,
+    pub(super) antennas: &'a Antennas,
 }
 
 impl Precise<'_> {
-    fn fit(&self, time: GpsTime) -> Option<Ephemeris> {
-        let samples: Vec<_> = (self.orbits.satellite(self.number).iter())
-            .map(|it| OrbitSample::from_ecef(time, model(it.time), &Vector3::from(it.position)))
-            .collect();
+    /// The samples of the orbit, which count from `reference`.
+    pub(super) fn samples(&self, reference: GpsTime) -> Vec<OrbitSample> {
+        let sample = |it: &files::OrbitSample| {
+            OrbitSample::from_ecef(reference, model(it.time), &Vector3::from(it.position))
+        };
+        self.orbits.satellite(self.number).iter().map(sample).collect()
+    }
+
+    fn fit(&self, time: GpsTime, issue: u16) -> Option<Ephemeris> {
+        let samples = self.samples(time);
         let orbit = Orbit { reference: time, samples: &samples };
         let steps = (REACH / STEP) as i32;
         let positions: Vec<_> = (-steps..=steps)
@@ -70,6 +82,7 @@ impl Precise<'_> {
         let state = orbit.at(time)?;
         let mut ephemeris = elements(self.constellation(), time, &state.position, &state.velocity);
         ephemeris.clock = self.clock(time)?;
+        ephemeris.issue = issue;
         for _ in 0..8 {
             improve(&mut ephemeris, &positions);
         }
@@ -81,7 +94,11 @@ impl Precise<'_> {
     }
 
     /// The vector from the centre of mass to the phase centre of the combination of both carriers.
-    fn to_phase_centre(&self, centre: &Vector3<f64>, time: GpsTime) -> Option<Vector3<f64>> {
+    pub(super) fn to_phase_centre(
+        &self,
+        centre: &Vector3<f64>,
+        time: GpsTime,
+    ) -> Option<Vector3<f64>> {
         let antenna =
             self.antennas.satellite(self.number, FileTime::new(time.day(), time.second()))?;
         let (carriers, on) = match self.constellation() {
@@ -109,7 +126,7 @@ impl Precise<'_> {
     }
 }
 
-fn model(time: FileTime) -> GpsTime {
+pub(super) fn model(time: FileTime) -> GpsTime {
     GpsTime::new(time.day(), time.second())
 }
 
@@ -144,6 +161,7 @@ fn elements(
         time,
         clock_time: time,
         clock: [0.0; 3],
+        issue: 0,
         group_delay: 0.0,
         root_of_axis: axis.sqrt(),
         eccentricity,
@@ -216,19 +234,34 @@ fn header(content: &str, label: &str) -> String {
     format!("{content:<60}{label}\n")
 }
 
-/// Writes a record. The accuracy field is set to the messages' value: 2 m for GPS, 3.12 m for Galileo.
+/// The data sources of LNAV, and of F/NAV and I/NAV.
+const LNAV: f64 = 1.0;
+const FNAV: f64 = 258.0;
+const INAV: f64 = 517.0;
+
+/// Writes the records of an ephemeris, for Galileo as both messages.
 fn write(text: &mut String, number: u8, it: &Ephemeris) {
+    if it.constellation == Constellation::Galileo {
+        write_record(text, number, it, FNAV);
+        write_record(text, number, it, INAV);
+    } else {
+        write_record(text, number, it, LNAV);
+    }
+}
+
+/// Writes a record. The accuracy field is set to the messages' value: 2 m for GPS, 3.12 m for Galileo.
+fn write_record(text: &mut String, number: u8, it: &Ephemeris, sources: f64) {
     let galileo = it.constellation == Constellation::Galileo;
     let hour = it.time.since(GpsTime::new(59_025, 0.0)) / 3600.0;
     let (day, hour) = if hour < 24.0 { (25, hour) } else { (26, hour - 24.0) };
     let ([cuc, cus], [crc, crs], [cic, cis]) =
         (it.latitude_terms, it.radius_terms, it.inclination_terms);
     let rows = [
-        [1.0, crs, it.mean_motion_correction, it.mean_anomaly],
+        [f64::from(it.issue), crs, it.mean_motion_correction, it.mean_anomaly],
         [cuc, it.eccentricity, cus, it.root_of_axis],
         [it.time.second_of_week(), cic, it.node, cis],
         [it.inclination, crc, it.perigee, it.node_rate],
-        [it.inclination_rate, if galileo { 258.0 } else { 1.0 }, 2111.0, 0.0],
+        [it.inclination_rate, sources, 2111.0, 0.0],
         [if galileo { 3.12 } else { 2.0 }, 0.0, 0.0, 1.0],
         [it.time.second_of_week(), if galileo { 0.0 } else { 4.0 }, 0.0, 0.0],
     ];
