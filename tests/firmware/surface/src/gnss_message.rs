@@ -68,8 +68,10 @@ fn corrections() {
     let Some(message) = ssr::Message::from_data(slice(&bytes)) else { return };
     let header: ssr::Header = message.header;
     keep(header);
-    let corrections: ssr::Corrections<'_> = ssr::Message::corrections(&message);
-    for (satellite, correction) in corrections {
+    let mut corrections = any(ssr::Message::corrections(&message));
+    while let Some((satellite, correction)) =
+        <ssr::Corrections<'_> as Iterator>::next(&mut corrections)
+    {
         keep(satellite);
         match correction {
             ssr::Correction::Orbit(orbit) => {
