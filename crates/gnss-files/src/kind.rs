@@ -6,6 +6,7 @@ use std::io::Read;
 use std::path::Path;
 
 use flate2::bufread::GzDecoder;
+use kestirim_gnss_message::ssr;
 
 use crate::earth_rotation::is_earth_rotation;
 use crate::error::{Error, quoted};
@@ -44,6 +45,8 @@ pub enum Kind {
     Ubx,
     /// A reference station's stream of observations and usually ephemerides: RTCM 3.
     Rtcm,
+    /// A service's stream, which begins with corrections of ephemerides: RTCM 3.
+    Corrections,
 }
 
 impl Kind {
@@ -89,8 +92,10 @@ impl Kind {
             _ if first.trim_ascii_start().starts_with(b"$$") => Some(Self::OceanLoading),
             _ if is_earth_rotation(first) => Some(Self::EarthRotation),
             _ if streams::is_ubx(bytes) => Some(Self::Ubx),
-            _ if streams::is_rtcm(bytes) => Some(Self::Rtcm),
-            _ => None,
+            _ => streams::first_of_rtcm(bytes).map(|data| match ssr::Message::from_data(data) {
+                Some(_) => Self::Corrections,
+                None => Self::Rtcm,
+            }),
         }
     }
 }
@@ -110,7 +115,8 @@ impl fmt::Display for Kind {
             Self::OceanLoading => "ocean loading (BLQ)",
             Self::EarthRotation => "Earth rotation (ERP)",
             Self::Ubx => "a receiver's stream (UBX)",
-            Self::Rtcm => "a stream of corrections (RTCM 3)",
+            Self::Rtcm => "the stream of a reference station (RTCM 3)",
+            Self::Corrections => "a stream of corrections (SSR in RTCM 3)",
         })
     }
 }

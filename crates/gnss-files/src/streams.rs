@@ -13,7 +13,7 @@ mod ubx;
 use std::collections::BTreeMap;
 use std::mem::take;
 
-pub(crate) use self::frames::{is_rtcm, is_ubx};
+pub(crate) use self::frames::{first_of_rtcm, is_ubx};
 use crate::error::{Error, Warning};
 use crate::kind::Kind;
 use crate::navigation::Ephemeris;
@@ -61,7 +61,7 @@ impl Stream {
             #[cfg(feature = "ubx")]
             Some(Kind::Ubx) => Ok(Some(ubx::read(text))),
             #[cfg(feature = "rtcm")]
-            Some(Kind::Rtcm) => rtcm::read(text).map(Some),
+            Some(Kind::Rtcm | Kind::Corrections) => rtcm::read(text).map(Some),
             _ => Ok(None),
         }
     }

@@ -142,7 +142,7 @@ impl System for Gnss {
         match field {
             "obs" => matches!(kind, Some(Kind::Observations | Kind::Ubx | Kind::Rtcm)),
             "sp3" => kind == Some(Kind::Orbits),
-            "nav" => kind == Some(Kind::Navigation),
+            "nav" => matches!(kind, Some(Kind::Navigation | Kind::Corrections)),
             "clk" => kind == Some(Kind::Clocks),
             "antex" => kind == Some(Kind::Antennas),
             "bias" => kind == Some(Kind::Biases),

@@ -7,7 +7,7 @@ use super::broadcast;
 use super::rtcm::ephemerides;
 use crate::error::Error;
 use crate::samples::text;
-use crate::{Navigation, SsrValues};
+use crate::{Kind, Navigation, SsrValues};
 
 /// A message with the orbit and clock of a satellite, whose radial correction is `radial` m.
 fn corrections(satellite: u8, radial: f64) -> Vec<u8> {
@@ -66,6 +66,8 @@ fn corrections_may_come_in_a_file_of_their_own() -> Result<(), Error> {
     let (alone, stream) = (text(corrections(1, 1.5)), text(ephemerides(&told)));
     let complaint = Navigation::parse(std::slice::from_ref(&alone)).expect_err("no ephemerides");
     assert!(complaint.to_string().ends_with("refer to, found none"), "{complaint}");
+    assert_eq!(Kind::of(alone.bytes()), Some(Kind::Corrections));
+    assert_eq!(Kind::of(stream.bytes()), Some(Kind::Rtcm));
     let navigation = Navigation::parse(&[alone, stream])?;
     assert_eq!(navigation.corrections.len(), 2);
     assert_eq!(navigation.satellites().collect::<Vec<_>>(), [1, 101]);
