@@ -74,7 +74,7 @@ impl Status {
         (Self::TooMany, c"there are more than there is room for"),
         (Self::TooFew, c"there are fewer than are needed"),
         (Self::Contradictory, c"the measurements contradict each other"),
-        (Self::Gap, c"the interval is too long, or not the model's"),
+        (Self::Gap, c"the interval is too long or not the model's, or no orbit covers it"),
         (Self::Geometry, c"the geometry determines nothing"),
         (Self::Refused, c"the estimator refused the step"),
         (Self::NoSnapshot, c"the bytes are no snapshot"),

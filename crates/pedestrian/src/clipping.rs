@@ -24,8 +24,8 @@ pub(crate) struct Turned<'a, T: Scalar> {
 
 /// Finds the ends of a gyroscope's range in the stream, and the rotation beyond them.
 ///
-/// A calibrated unit that clips does not repeat a value: bias, scale and the other axes shift its plateau by some per
-/// mille, and each axis has two ends of its own. A plateau differs from the top of a swing by its corners: continued
+/// A calibrated unit that clips does not repeat a value: bias, scale and the other axes shift its plateau by up to
+/// two per cent, and each axis has two ends of its own. A plateau differs from the top of a swing by its corners: continued
 /// with the slopes at its beginning and end, the curve would have risen far above it.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -93,6 +93,7 @@ impl Broadcast {
                 Carriers::G1G2 { .. } | Carriers::B1cB2a => Own::default(),
             };
             let corrected = match carriers.constellation() {
+                _ if broadcast.ssr.is_none() => Vec::new(),
                 Constellation::Gps => on(Message::Lnav, Carriers::L1L2),
                 Constellation::Galileo => on(Message::Inav, Carriers::E1E5b),
                 Constellation::Glonass | Constellation::BeiDou => Vec::new(),

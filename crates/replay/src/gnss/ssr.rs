@@ -72,7 +72,8 @@ impl Ssr {
         let own = self.satellites.get(&satellite)?;
         let bias = |code: Signal| {
             let (_, biases) = own.codes.iter().find(|(signal, _)| *signal == code)?;
-            Some(at(biases, time)?.value)
+            // Biases of codes hardly change in a day, and are sent more rarely.
+            Some(newest(biases, time)?.value)
         };
         let [first, second] = codes;
         Some([bias(first?)?, second.map_or(Some(0.0), bias)?])
@@ -112,8 +113,13 @@ fn sort<T>(values: &mut [Timed<T>]) {
     values.sort_by(|a, b| a.since().since(b.since()).total_cmp(&0.0));
 }
 
+/// The newest value at a time; the first one before its own time.
+fn newest<T>(values: &[Timed<T>], time: GpsTime) -> Option<&Timed<T>> {
+    let later = values.partition_point(|it| time.since(it.since()) >= 0.0);
+    values.get(later.saturating_sub(1))
+}
+
 /// The newest value at a time, if it still serves.
 fn at<T>(values: &[Timed<T>], time: GpsTime) -> Option<&Timed<T>> {
-    let later = values.partition_point(|it| time.since(it.since()) >= 0.0);
-    values.get(later.saturating_sub(1)).filter(|newest| newest.serves_at(time))
+    newest(values, time).filter(|newest| newest.serves_at(time))
 }
