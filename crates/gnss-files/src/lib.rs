@@ -41,7 +41,7 @@ pub use observations::{Carriers, Epoch, Observations, Observed, Signal, Signals}
 pub use ocean_loading::{OceanLoading, StationLoading};
 pub use orbits::{OrbitSample, Orbits};
 pub use received::Received;
-pub use ssr::{SsrClock, SsrCorrection, SsrHeader, SsrOrbit, SsrValues};
+pub use ssr::{SsrClock, SsrCorrection, SsrHeader, SsrOrbit, SsrSystem, SsrValues};
 pub use system::{System, satellite_name};
 pub use text::Text;
 pub use time::GpsTime;

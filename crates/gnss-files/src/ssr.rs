@@ -1,8 +1,10 @@
 //! Corrections of broadcast ephemerides, from a service's stream.
 
-pub use kestirim_gnss_message::ssr::{Clock as SsrClock, Header as SsrHeader, Orbit as SsrOrbit};
+pub use kestirim_gnss_message::ssr::{
+    Clock as SsrClock, Header as SsrHeader, Orbit as SsrOrbit, System as SsrSystem,
+};
 #[cfg(feature = "rtcm")]
-use kestirim_gnss_message::ssr::{Correction, Message, System as Of};
+use kestirim_gnss_message::ssr::{Correction, Message};
 
 use crate::observations::Signal;
 #[cfg(feature = "rtcm")]
@@ -37,8 +39,8 @@ impl SsrCorrection {
     /// The corrections of a message; those of signals that are not used are left out.
     pub(crate) fn of(message: Message<'_>) -> impl Iterator<Item = Self> {
         let system = match message.header.system {
-            Of::Gps => System::Gps,
-            Of::Galileo => System::Galileo,
+            SsrSystem::Gps => System::Gps,
+            SsrSystem::Galileo => System::Galileo,
         };
         message.corrections().filter_map(move |(number, correction)| {
             let values = match correction {

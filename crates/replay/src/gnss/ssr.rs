@@ -123,3 +123,38 @@ fn newest<T>(values: &[Timed<T>], time: GpsTime) -> Option<&Timed<T>> {
 fn at<T>(values: &[Timed<T>], time: GpsTime) -> Option<&Timed<T>> {
     newest(values, time).filter(|newest| newest.serves_at(time))
 }
+
+#[cfg(test)]
+mod tests {
+    use kestirim_gnss_files::{SsrHeader, SsrSystem};
+
+    use super::*;
+
+    #[test]
+    fn the_newest_value_serves_and_the_first_one_before_its_time() {
+        let midnight = GpsTime::new(59_025, 0.0);
+        let header = |second: f64| SsrHeader {
+            system: SsrSystem::Gps,
+            second: midnight.second_of_week() + second,
+            interval: 60.0,
+            reference: midnight.second_of_week() + second + 30.0,
+            provider: (258, 1),
+            configuration: 0,
+        };
+        // As they came, one of them late.
+        let mut values =
+            [100.0, 160.0, 40.0, 220.0].map(|second| Timed::new(midnight, &header(second), second));
+        sort(&mut values);
+        let served = |second| {
+            let of = |it: &Timed<f64>| it.value;
+            let time = midnight.plus(second);
+            [newest(&values, time).map(of), at(&values, time).map(of)]
+        };
+        assert_eq!(served(0.0), [Some(40.0), None]);
+        assert_eq!(served(39.5), [Some(40.0); 2]);
+        assert_eq!(served(99.9), [Some(40.0); 2]);
+        assert_eq!(served(100.0), [Some(100.0); 2]);
+        assert_eq!(served(340.0), [Some(220.0); 2]);
+        assert_eq!(served(340.1), [Some(220.0), None]);
+    }
+}
