@@ -133,7 +133,7 @@ pub struct GnssSatellite {
 pub struct GnssObservation {
     /// Number of the satellite, unique among all systems: for example the PRN for GPS, 100 plus the number for Galileo.
     pub satellite: u8,
-    /// 1 if the receiver reports a loss of lock since the last epoch, else 0.
+    /// 1 if the receiver reports a loss of lock since the epoch with a position in which this satellite was last given, else 0.
     pub lock_lost: u8,
     /// Frequency channel of a GLONASS satellite, -7 to 6; 0 for other systems.
     pub channel: i8,

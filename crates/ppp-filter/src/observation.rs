@@ -17,7 +17,7 @@ pub struct SatelliteObservation<'a> {
     pub code: [f64; 2],
     /// The carrier phases on both carriers, cycles.
     pub phase: [f64; 2],
-    /// Whether the receiver reports a loss of lock since the last epoch that had a solution.
+    /// Whether the receiver reports a loss of lock since the epoch whose solution last listed this satellite.
     pub lock_lost: bool,
     /// The satellite's state at the time of transmission.
     pub state: SatelliteState,

@@ -40,7 +40,13 @@ impl<const N: usize> Running<N> {
             self.rest.stay(&position, &covariance);
         }
         let moved = self.rest.has_moved(&position).then_some(Contradiction::Motion);
-        let heard = decisions.iter().filter(|[_, phase]| phase.weight > 0.0).count();
+        let (mut heard, mut systems) = (0, 0_u32);
+        for ((observation, _), [_, phase]) in lines.iter().zip(decisions) {
+            if phase.weight > 0.0 {
+                heard += 1;
+                systems |= 1 << observation.carriers.constellation() as u32;
+            }
+        }
         Solution {
             time: self.time,
             position,
@@ -51,7 +57,7 @@ impl<const N: usize> Running<N> {
             gradients: self.gradients(),
             health: if let Some(contradiction) = contradiction.or(moved) {
                 Health::Contradicted(contradiction)
-            } else if heard < 5 {
+            } else if heard < 4 + systems.count_ones().max(1) {
                 Health::Unchecked
             } else if spread < CONVERGED {
                 Health::Converged

@@ -50,9 +50,14 @@ impl<T> Timed<T> {
         (-EARLIER..=self.holds).contains(&time.since(self.since))
     }
 
-    /// Whether the correction no longer serves at a time.
-    fn is_over_at(&self, time: GpsTime) -> bool {
-        time.since(self.since) > self.holds
+    /// Whether the correction serves, or served or will serve, about the time when something is received.
+    fn is_current_at(&self, received: GpsTime) -> bool {
+        received.since(self.since).abs() <= self.holds
+    }
+
+    /// Whether a correction that was received now is to replace this one: messages may come late.
+    fn makes_way<S>(&self, newer: &Timed<S>, received: GpsTime) -> bool {
+        newer.since.since(self.since) >= 0.0 || !self.is_current_at(received)
     }
 }
 
@@ -122,8 +127,10 @@ struct Satellite {
     number: u8,
     /// The ephemeris to which the orbit's correction belongs. A newer one is received before the service corrects it.
     ephemeris: Ephemeris,
+    /// The time from which this ephemeris has been corrected: a clock's correction, which does not name its ephemeris, is one of
+    /// it from then on.
+    begun: GpsTime,
     orbit: Timed<Orbit>,
-    /// The clock's correction, which belongs to the same ephemeris.
     clock: Option<Timed<Clock>>,
 }
 
@@ -150,10 +157,9 @@ impl<const N: usize> Corrected<N> {
         if !received.second().is_finite() {
             return;
         }
-        let Header { second, provider, .. } = message.header;
+        let Header { provider, .. } = message.header;
         if self.provider != Some(provider) {
-            let since = received.nearest_second_of_week(second);
-            if !self.satellites.iter().all(|it| it.orbit.is_over_at(since)) {
+            if self.satellites.iter().any(|it| it.orbit.is_current_at(received)) {
                 return;
             }
             self.satellites.clear();
@@ -164,15 +170,23 @@ impl<const N: usize> Corrected<N> {
             match correction {
                 Correction::Orbit(orbit) => {
                     let orbit = Timed::new(received, &message.header, orbit);
-                    self.take_orbit(number, orbit, broadcast.newest(number));
+                    self.take_orbit(number, orbit, broadcast.newest(number), received);
                 }
                 Correction::Clock(clock) => {
-                    if let Some(of) = self.satellites.iter_mut().find(|it| it.number == number) {
-                        of.clock = Some(Timed::new(received, &message.header, clock));
-                    }
+                    let clock = Timed::new(received, &message.header, clock);
+                    self.take_clock(number, clock, received);
                 }
                 Correction::Code { .. } => {}
             }
+        }
+    }
+
+    fn take_clock(&mut self, number: u8, clock: Timed<Clock>, received: GpsTime) {
+        let Some(of) = self.satellites.iter_mut().find(|it| it.number == number) else { return };
+        let is_of_ephemeris = clock.since.since(of.begun) >= 0.0;
+        let is_newer = of.clock.as_ref().is_none_or(|it| it.makes_way(&clock, received));
+        if is_of_ephemeris && is_newer {
+            of.clock = Some(clock);
         }
     }
 
@@ -181,9 +195,13 @@ impl<const N: usize> Corrected<N> {
         number: u8,
         orbit: Timed<Orbit>,
         newest: Result<Ephemeris, NoEphemeris>,
+        received: GpsTime,
     ) {
         let place = self.satellites.iter().position(|it| it.number == number);
         let own = place.and_then(|place| self.satellites.get(place)).copied();
+        if own.is_some_and(|it| !it.orbit.makes_way(&orbit, received)) {
+            return;
+        }
         let known = own.map(|it| it.ephemeris);
         let of_issue = newest.into_iter().chain(known).find(|it| orbit.value.is_of(it.issue));
         let Some(ephemeris) = of_issue else {
@@ -192,11 +210,12 @@ impl<const N: usize> Corrected<N> {
             }
             return;
         };
-        // A clock's correction is one of an ephemeris, too, which its message does not name.
-        let clock = own.filter(|it| it.ephemeris == ephemeris).and_then(|it| it.clock);
-        let new = Satellite { number, ephemeris, orbit, clock };
+        let same = own.filter(|it| it.ephemeris == ephemeris);
+        let begun = same.map_or(orbit.since, |it| it.begun);
+        let new =
+            Satellite { number, ephemeris, begun, orbit, clock: same.and_then(|it| it.clock) };
         let place = place.or_else(|| {
-            let is_over = |it: &Satellite| it.orbit.is_over_at(orbit.since);
+            let is_over = |it: &Satellite| !it.orbit.is_current_at(received);
             let is_full = self.satellites.is_full();
             self.satellites.iter().position(is_over).filter(|_| is_full)
         });

@@ -44,8 +44,12 @@ pub(crate) fn code_position(
     // Each system has a clock of its own: the codes of one system determine the place.
     let system = |it: &SatelliteObservation<'_>| it.carriers.constellation();
     let mut counts = Constellation::ALL.map(|of| (of, 0));
-    for observation in observations {
-        if let Some((_, count)) = counts.get_mut(system(observation) as usize) {
+    for (index, observation) in observations.iter().enumerate() {
+        let is_usable = observation.carriers.ionosphere_free(observation.code).is_finite();
+        if is_usable
+            && dropped & (1 << index) == 0
+            && let Some((_, count)) = counts.get_mut(system(observation) as usize)
+        {
             *count += 1;
         }
     }

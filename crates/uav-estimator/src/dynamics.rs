@@ -59,7 +59,9 @@ impl Dynamics {
                 if !whole {
                     return Err(Error::WrongInterval { own: *own, found: interval });
                 }
-                Ok(repeated(step, &(step.b * variances * step.b.transpose()), count as u32))
+                // Noise that is white over a sample, not over a step: a step sees the more of it the shorter it is.
+                let once = step.b * variances * step.b.transpose() * (sample / own);
+                Ok(repeated(step, &once, count as u32))
             }
         }
     }

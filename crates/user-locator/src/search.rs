@@ -82,7 +82,7 @@ impl<T: Scalar, const M: usize, const N: usize> BeaconSearch<T, M, N> {
         place: [T; 2],
         probability: T,
     ) -> bool {
-        estimate.is_credible(self.measurements(), place, probability)
+        self.area.contains(place) && estimate.is_credible(self.measurements(), place, probability)
     }
 
     /// Whether an estimate from these measurements is reliable: reports `innovations` if their levels show a step

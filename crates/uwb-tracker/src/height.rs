@@ -106,7 +106,7 @@ impl<T: Scalar, const A: usize> HeightFinder<T, A> {
             newest_us: None,
             moment_us: None,
             place: None,
-            pace: Pace::new(A),
+            pace: Pace::new(anchors.len()),
         })
     }
 

@@ -14,9 +14,9 @@ const REACH: f64 = 3.0;
 const CLEAR: f64 = 3.0;
 /// Horizontal distance below which anchors count as one above the other, m.
 const NEAREST: f64 = 0.05;
-/// Distance from a line or plane within which anchors count as lying in it, m: they distinguish its two sides by less
-/// than their errors.
-const FLAT: f64 = 0.1;
+/// Distance from a line or plane within which anchors count as lying in it, in standard deviations of a range: they
+/// distinguish its two sides by less than their errors.
+const FLAT: f64 = 3.0;
 /// Margin by which a position may be outside of the room, m, as in the search for a position.
 pub(crate) const ROOM_MARGIN: f64 = 0.5;
 
@@ -53,13 +53,18 @@ pub(crate) fn reached<T: Scalar, const D: usize, const N: usize>(
     (distance <= bent + spread(estimate)).then_some(mirror)
 }
 
-/// Anchors that define the line or plane in which all anchors lie; `None` if one of them distinguishes its two sides.
+/// Anchors that define the line or plane in which all anchors lie, by ranges with this standard deviation (m); `None` if one of
+/// them distinguishes its two sides.
 #[inline(never)] // Called once per tracker.
-pub(crate) fn flat<T: Scalar, const D: usize>(links: &[Link<T>]) -> Option<Mirror<D>> {
+pub(crate) fn flat<T: Scalar, const D: usize>(
+    links: &[Link<T>],
+    range_sigma: T,
+) -> Option<Mirror<D>> {
+    let near = range_sigma * T::from_f64(FLAT);
     let mut chosen = Mirror::<D>::zeros();
     // The anchor farthest from those chosen before makes the line or plane most certain.
     for count in 1..=D {
-        let farthest = outside::<T, D>(chosen.as_array().get(..count)?, links);
+        let farthest = outside::<T, D>(chosen.as_array().get(..count)?, links, near);
         match (chosen.as_array_mut().get_mut(count), farthest) {
             (Some(next), Some(anchor)) => *next = anchor,
             // A plane through nearly collinear anchors is too uncertain to mirror at.
@@ -72,10 +77,10 @@ pub(crate) fn flat<T: Scalar, const D: usize>(links: &[Link<T>]) -> Option<Mirro
     None
 }
 
-/// The anchor farthest from the line or plane through some others; `None` if all lie in it.
+/// The anchor farthest from the line or plane through some others; `None` if all are this `near` (m).
 #[inline(never)] // Called a few times: one copy is enough.
-fn outside<T: Scalar, const D: usize>(chosen: &[u16], links: &[Link<T>]) -> Option<u16> {
-    let (mut far, mut farthest) = (T::from_f64(FLAT), None);
+fn outside<T: Scalar, const D: usize>(chosen: &[u16], links: &[Link<T>], near: T) -> Option<u16> {
+    let (mut far, mut farthest) = (near, None);
     for (anchor, link) in links.iter().enumerate() {
         let from = beside::<T, D>(chosen, links, &place(link));
         let distance = from.map_or(T::ZERO, |from| T::norm(from.as_array()));

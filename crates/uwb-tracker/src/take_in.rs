@@ -39,15 +39,16 @@ pub(crate) fn take_in<T: Scalar, const N: usize>(
     let believed = gate.gamma() * weighed.variance();
     let (outcome, square) = match verdict {
         Verdict::Admit => {
-            link.is_blocked = false;
             let square = weighed.innovation() * weighed.innovation();
-            if let Some(noise) = weakened(&weighed, config) {
+            let outcome = if let Some(noise) = weakened(&weighed, config) {
                 estimate.correct(&weighed.with_noise(noise)?)?;
-                (Outcome::Weakened, square)
+                Outcome::Weakened
             } else {
                 estimate.correct(&weighed)?;
-                (Outcome::Taken, square)
-            }
+                Outcome::Taken
+            };
+            link.is_blocked = false;
+            (outcome, square)
         }
         Verdict::Reject => (Outcome::Rejected, believed),
         Verdict::Recover if weighed.innovation() > T::ZERO && others_agree() => {

@@ -238,15 +238,17 @@ fn bad_ranges_are_counted_and_do_no_harm() {
 }
 
 #[test]
-fn a_time_far_ahead_ends_nothing() {
-    let spoil = |epoch: usize, t: f64, anchor: usize, range: f64| {
-        let ahead = if (epoch, anchor) == (100, 2) { 1e6 } else { 0.0 };
-        vec![line(t + ahead, anchor, range)]
-    };
-    let report = Room::new([0.0; 4], spoil).report(&["--height", "1"]);
-    assert!(report["accuracy"]["rmse_m"].as_f64().unwrap() < 0.1, "{report}");
-    assert_eq!(report["accuracy"]["positions"], 400);
-    assert!(report["warnings"][0].as_str().unwrap().starts_with("1 samples"));
+fn a_time_far_off_ends_nothing() {
+    for (spoilt, off) in [(100, 1e6), (300, -1e6)] {
+        let spoil = |epoch: usize, t: f64, anchor: usize, range: f64| {
+            let off = if (epoch, anchor) == (spoilt, 2) { off } else { 0.0 };
+            vec![line(t + off, anchor, range)]
+        };
+        let report = Room::new([0.0; 4], spoil).report(&["--height", "1"]);
+        assert!(report["accuracy"]["rmse_m"].as_f64().unwrap() < 0.1, "{report}");
+        assert_eq!(report["accuracy"]["positions"], 400);
+        assert!(report["warnings"][0].as_str().unwrap().starts_with("1 samples"));
+    }
 }
 
 #[test]

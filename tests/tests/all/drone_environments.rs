@@ -45,6 +45,7 @@ fn none_of_a_thousand_flights_contradicts_its_own_environment() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
     let estimate = Estimate {
         stop: 0,
+        first: 0,
         place: [0.0; 2],
         sd_m: 1.0,
         level_db: None,

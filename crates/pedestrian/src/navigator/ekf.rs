@@ -52,6 +52,10 @@ impl<T: Scalar> Ekf<T> {
     /// The longest swing in which the uncertainty grows (s): after it the next stance has full weight anyway.
     const LONGEST_SWING: f64 = 3.0;
 
+    /// The variance up to which that of the heading grows in fixed point, (0.17 rad)² × 1000: standing does not observe it, and
+    /// in the next swing it becomes a variance of the velocity, which must not saturate at 8 m/s.
+    const MOST_HEADING: f64 = 30.0;
+
     /// The covariance of the error, 6 × 6 in (m/s, rad)² × 1000.
     pub fn covariance(&self) -> &Covariance<T, 6> {
         &self.error.covariance
@@ -73,7 +77,11 @@ impl<T: Scalar> Ekf<T> {
         let attitude = self.noise.attitude_variance * dt;
         p.add_variance::<3>(attitude);
         p.add_variance::<4>(attitude);
-        p.add_variance::<5>(attitude);
+        let is_float = T::headroom(0) == Some(0);
+        let most = T::from_f64(Self::MOST_HEADING);
+        if is_float || p.get(5, 5).is_some_and(|heading| heading < most) {
+            p.add_variance::<5>(attitude);
+        }
     }
 
     /// Moves the error that the updates found into the estimate.

@@ -102,6 +102,19 @@ fn a_biased_and_noisy_chip_walks_as_far() {
     check_all::<Q12_20>(&foot, [12.0, 0.0]);
 }
 
+/// Standing does not observe the heading, whose uncertainty must not overflow in the swing after it.
+#[test]
+fn a_walk_after_minutes_of_standing_is_as_long_in_fixed_point() {
+    const STOOD_US: u64 = 330_000_000;
+    let foot = Foot::default();
+    let walk = foot.samples::<Q12_20>();
+    let still = |time_us| ImuSample { time_us, ..walk[0] };
+    let mut samples: Vec<_> = (1..=STOOD_US / 10_000).map(|step| still(10_000 * step)).collect();
+    let later = |sample: &ImuSample<_>| ImuSample { time_us: sample.time_us + STOOD_US, ..*sample };
+    samples.extend(walk.iter().map(later));
+    check(&causal::<Q12_20, Ekf<Q12_20>>(&samples), &foot, [12.0, 0.0]);
+}
+
 /// A bus that stalls for 0.6 s delivers zeros: the walk before is unaffected, and the tracker continues.
 #[test]
 fn zeros_teach_nothing_and_end_nothing() {

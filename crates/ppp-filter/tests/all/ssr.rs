@@ -126,6 +126,9 @@ fn one_service_counts_until_it_falls_silent_and_a_silent_satellite_makes_room() 
         [3, 4, 5, 9].map(|it| corrected.state(it, &broadcast, now.plus(second), CODE).is_ok())
     };
     assert_eq!(known(&corrected, 2.0), [true, false, false, false]);
+    // A service whose clock is fast does not take the place of the first one either.
+    take(&mut corrected, &broadcast, &message(7_300, 2, &[(4, own)]), now.plus(1.0));
+    assert_eq!(known(&corrected, 2.0), [true, false, false, false]);
     // No room for a third one while both serve.
     take(&mut corrected, &broadcast, &message(7_050, 1, &[(4, own), (5, own)]), now.plus(50.0));
     assert_eq!(known(&corrected, 51.0), [true, true, false, false]);
@@ -154,8 +157,14 @@ fn a_clock_belongs_to_the_ephemeris_of_the_orbit_before_it() {
     hear(&mut broadcast, 5, 14_400, 0, now.plus(200.0));
     take(&mut corrected, &broadcast, &data(1_057, 7_210, 1, &new), now.plus(210.0));
     assert!(!is_known(&corrected, &broadcast, 211.0), "the clock is one of the old ephemeris");
+    // A late one, of the old ephemeris.
+    take(&mut corrected, &broadcast, &data(1_058, 7_205, 1, &new), now.plus(210.0));
+    assert!(!is_known(&corrected, &broadcast, 211.0));
     take(&mut corrected, &broadcast, &data(1_058, 7_210, 1, &new), now.plus(210.0));
     assert!(is_known(&corrected, &broadcast, 211.0));
+    // What is older than what is known changes nothing.
+    take(&mut corrected, &broadcast, &data(1_060, 7_205, 1, &old), now.plus(211.0));
+    assert!(is_known(&corrected, &broadcast, 212.0));
 }
 
 #[test]

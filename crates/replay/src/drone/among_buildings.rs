@@ -92,6 +92,7 @@ impl Search<'_> {
             };
             estimates.push(Estimate {
                 stop: number,
+                first: 0,
                 place: self.outward([x, y]),
                 sd_m: along.hypot(across),
                 // A received level is the negative loss: the more the transmitter sends, the smaller the loss.

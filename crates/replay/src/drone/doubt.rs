@@ -25,7 +25,7 @@ pub enum Doubt {
 }
 
 impl Doubt {
-    /// All doubts about the measurements up to an estimate; `channel` is that of the environment, if one is known, and
+    /// All doubts about the measurements of an estimate; `channel` is that of the environment, if one is known, and
     /// `moved_m` the result of [`Search::moved`](super::Search::moved).
     pub fn all(
         stops: &[Stop],
@@ -33,7 +33,7 @@ impl Doubt {
         channel: Option<&Channel<f64>>,
         moved_m: Option<f64>,
     ) -> impl Iterator<Item = Self> {
-        let stops = stops.get(..=estimate.stop).unwrap_or(stops);
+        let stops = stops.get(estimate.first..=estimate.stop).unwrap_or(stops);
         let step = level_step(stops, estimate.place).map(|(t, by)| Self::Step { t, by });
         let misfit = channel.and_then(|it| Misfit::find(stops, estimate, it));
         // The level of an unknown transmitter may be anything.

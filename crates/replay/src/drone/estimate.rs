@@ -3,8 +3,10 @@ use super::Cloud;
 /// The estimated place of the user after a measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
-    /// The index of the measurement, from 0.
+    /// The index of the newest measurement, from 0.
     pub stop: usize,
+    /// The index of the oldest one that it was made from.
+    pub first: usize,
     /// The place, in the coordinates of the measurements, m.
     pub place: [f64; 2],
     /// The root mean square error that the filter expects, m.

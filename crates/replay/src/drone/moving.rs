@@ -61,6 +61,6 @@ impl Search<'_> {
             ..*self
         };
         let found = search.find(environment, quantity).pop()?;
-        Some(Estimate { stop: part.start + found.stop, ..found })
+        Some(Estimate { stop: part.start + found.stop, first: part.start, ..found })
     }
 }

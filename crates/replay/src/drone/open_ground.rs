@@ -60,6 +60,7 @@ impl Search<'_> {
             self.with_clouds.then(|| Cloud::of_lattice(&found.posterior).moved(self.origin));
         Some(Estimate {
             stop,
+            first: 0,
             place: self.outward(found.place),
             sd_m: found.sigma,
             level_db: (quantity == Quantity::Level).then_some(found.fit.level),

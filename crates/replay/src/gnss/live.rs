@@ -45,7 +45,7 @@ pub struct Live {
     fresh: usize,
     /// The size that data must reach before they are read again after they could not be read, in bytes.
     enough: usize,
-    /// The carriers with which the filter has been fed: with others it begins anew.
+    /// The carriers with which the filter has been fed, one pair for each system: with others of a system it begins anew.
     carriers: Vec<Carriers>,
     feed: Option<Box<Feed<STATES_OF_ALL>>>,
     /// The last epoch that was fed.
@@ -147,10 +147,30 @@ impl Live {
         begins.is_some()
     }
 
+    /// Notes the observed carriers; returns whether they are those of before, as far as their systems were observed. The filter
+    /// knows of systems that come and go.
+    fn take_carriers(&mut self, observed: &[Carriers]) -> bool {
+        // Each satellite of GLONASS has a channel of its own.
+        let pair = |of: &Carriers| match of {
+            Carriers::G1G2 { .. } => Carriers::G1G2 { channel: 0 },
+            other => *other,
+        };
+        for carriers in observed.iter().map(pair) {
+            match self.carriers.iter().find(|known| known.system() == carriers.system()) {
+                Some(known) if *known != carriers => {
+                    self.carriers = observed.iter().map(pair).collect();
+                    return false;
+                }
+                Some(_) => {}
+                None => self.carriers.push(carriers),
+            }
+        }
+        true
+    }
+
     fn follow(&mut self, recording: &Recording, is_end: bool) {
         let epochs = recording.epochs(None);
-        if recording.carriers() != self.carriers {
-            self.carriers = recording.carriers().to_vec();
+        if !self.take_carriers(recording.carriers()) {
             self.feed = None;
         }
         // Without this, the filter would wait for a time that was ahead by mistake.
@@ -269,6 +289,17 @@ mod tests {
             assert!(live.now().is_none() && live.counts() == [0; 2]);
         }
         (live.warnings().join("; "), live.kept.len())
+    }
+
+    #[test]
+    fn a_system_may_come_and_go_and_only_other_carriers_of_one_begin_anew() {
+        use Carriers::{E1E5a, E1E5b, G1G2, L1L2};
+        let mut live = Live::new(Config::new(Motion::Static), Pass::default(), Corrections::ALL);
+        assert!(live.take_carriers(&[L1L2, G1G2 { channel: 1 }]));
+        assert!(live.take_carriers(&[L1L2, G1G2 { channel: -4 }, E1E5a]));
+        assert!(live.take_carriers(&[L1L2]));
+        assert!(!live.take_carriers(&[L1L2, E1E5b]));
+        assert!(live.take_carriers(&[E1E5b]));
     }
 
     #[test]

@@ -119,15 +119,15 @@ impl Sensors {
         Self { ranges, ..Self::default() }
     }
 
-    /// Drops samples whose time is more than 10 s ahead of one that follows, and returns a warning if there were any: a
-    /// single wrong time would make everything after it late.
-    pub fn drop_far_ahead(&mut self) -> Option<String> {
-        let ahead = far_ahead_dropped(&mut self.ranges, |row| row.time_us)
-            + far_ahead_dropped(&mut self.differences, |difference| difference.time_us)
-            + far_ahead_dropped(&mut self.inertial, |sample| sample.time_us)
-            + far_ahead_dropped(&mut self.wheels, |sample| sample.time_us);
-        (ahead > 0).then(|| {
-            format!("{ahead} samples are more than 10 s ahead of what follows them: left out")
+    /// Drops samples whose time is more than 10 s ahead of what follows them, or behind what precedes them, whichever are
+    /// fewer, and returns a warning if there were any: a single wrong time would make everything else late.
+    pub fn drop_wrong_times(&mut self) -> Option<String> {
+        let dropped = drop_wrong(&mut self.ranges, |row| row.time_us)
+            + drop_wrong(&mut self.differences, |difference| difference.time_us)
+            + drop_wrong(&mut self.inertial, |sample| sample.time_us)
+            + drop_wrong(&mut self.wheels, |sample| sample.time_us);
+        (dropped > 0).then(|| {
+            format!("{dropped} samples are more than 10 s off the times around them: left out")
         })
     }
 
@@ -171,22 +171,33 @@ impl Sensors {
     }
 }
 
-/// The largest step back in time of later samples, µs; a sample that they go back further behind had a wrong time.
+/// The largest step back in time of later samples, µs; where they go back further, a time is wrong.
 const LARGEST_STEP_BACK_US: i64 = 10_000_000;
 
-fn far_ahead_dropped<S>(samples: &mut Vec<S>, time_us: impl Fn(&S) -> i64) -> usize {
-    let (before, mut earliest_us) = (samples.len(), i64::MAX);
-    let mut kept = Vec::with_capacity(before);
-    while let Some(sample) = samples.pop() {
-        let time_us = time_us(&sample);
-        if time_us.saturating_sub(LARGEST_STEP_BACK_US) <= earliest_us {
-            earliest_us = earliest_us.min(time_us);
-            kept.push(sample);
-        }
-    }
-    kept.reverse();
-    *samples = kept;
-    before - samples.len()
+/// Drops the fewest samples whose times are wrong; returns their number.
+fn drop_wrong<S>(samples: &mut Vec<S>, time_us: impl Fn(&S) -> i64) -> usize {
+    let times: Vec<_> = samples.iter().map(time_us).collect();
+    let mut latest_us = i64::MIN;
+    let is_behind: Vec<_> = (times.iter())
+        .map(|time_us| {
+            latest_us = latest_us.max(*time_us);
+            time_us.saturating_add(LARGEST_STEP_BACK_US) < latest_us
+        })
+        .collect();
+    let mut earliest_us = i64::MAX;
+    let mut is_ahead: Vec<_> = (times.iter().rev())
+        .map(|time_us| {
+            let is_ahead = time_us.saturating_sub(LARGEST_STEP_BACK_US) > earliest_us;
+            earliest_us = earliest_us.min(*time_us);
+            is_ahead
+        })
+        .collect();
+    is_ahead.reverse();
+    let count = |wrong: &[bool]| wrong.iter().filter(|it| **it).count();
+    let wrong = if count(&is_behind) < count(&is_ahead) { is_behind } else { is_ahead };
+    let mut each = wrong.iter();
+    samples.retain(|_| each.next() == Some(&false));
+    count(&wrong)
 }
 
 /// Merges two sequences in the order of their times; at equal times, the first comes before the second.

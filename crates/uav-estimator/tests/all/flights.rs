@@ -183,6 +183,10 @@ fn a_discrete_model_is_stepped_over_a_gap() {
     assert!((seven.transition.b - exact.transition.b).amax() < 1e-13);
     // White noise that is held for a sample, and continuous white noise: nearly the same.
     assert!((seven.noise - exact.noise).amax() < 0.2 * exact.noise.amax());
+    // So they are if the log has a sample for every five steps.
+    let [seven, exact] =
+        [model, dynamics()].map(|it| it.over(0.07, 5.0 * USUAL_S, &inputs).unwrap());
+    assert!((seven.noise - exact.noise).amax() < 0.2 * exact.noise.amax());
 }
 
 proptest! {

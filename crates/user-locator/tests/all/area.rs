@@ -91,6 +91,14 @@ fn a_search_is_a_beacon_in_an_area() -> Outcome {
     assert_eq!((found.place, found.level), (same.place, same.level));
     assert!(search.credible(&found, [120.0, -40.0], 0.9));
     assert_eq!(search.area(), &area);
+    // Where the transmitter may be almost anywhere, it is still not outside.
+    let mut vague = BeaconSearch::<f64, 41, 4>::new(FreeSpace::new(None), area.clone());
+    for k in 0..3 {
+        vague.measure(&measured(k)?);
+    }
+    let found = vague.estimate::<1000>()?;
+    assert!(vague.credible(&found, [-250.0, 200.0], 0.999_999));
+    assert!(!vague.credible(&found, [-250.0, 220.0], 0.999_999));
     // However long the flight is, and wherever the transmitter cannot be.
     for k in 40..1000 {
         search.measure(&measured(k)?);

@@ -99,7 +99,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             anchor.check()?;
             links.push(Link::new(*anchor, &config)).map_err(|_| Error::TooManyAnchors)?;
         }
-        let flat = mirror::flat(&links);
+        let flat = mirror::flat(&links, config.range_sigma);
         Ok(Self {
             config,
             links,

@@ -206,7 +206,9 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         }
         let interval = T::from_micro(elapsed.min(LOST_US) as i32);
         let believed = self.counters.nis < T::from_f64(NIS_OF_SLIP);
-        let wheels = self.fresh_wheels(time_us).filter(|_| believed);
+        // A sample says nothing about a silence that was longer than it stays fresh.
+        let is_short = elapsed <= wheel_noise::FRESH_US;
+        let wheels = self.fresh_wheels(time_us).filter(|_| believed && is_short);
         let last = self.wheels.map_or(T::ZERO, |wheels| wheels.speed);
         let doubt = self.counters.nis.max(T::ONE);
         let mut courses = self.courses;

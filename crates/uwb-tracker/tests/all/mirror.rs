@@ -165,9 +165,11 @@ fn three_anchors_in_space_leave_two_places_at_their_plane() {
 fn check_wall<T: Scalar>() {
     let wall = [[0.0, 0.0, 2.0], [4.0, 0.03, 2.4], [8.0, 0.0, 1.6], [6.0, -0.04, 2.0]];
     let bent = [wall[0], wall[1], [8.0, 0.5, 1.6], wall[3]];
+    // Twice the error of a range: the filter could begin on either side.
+    let hardly = [wall[0], [4.0, 0.2, 2.4], [8.0, 0.2, 1.6], [12.0, 0.0, 2.0]];
     let room = Room::plane(T::ZERO, T::ZERO, T::from_f64(8.0), T::from_f64(6.0));
     for (places, room, is_told) in
-        [(wall, None, true), (wall, Some(room), false), (bent, None, false)]
+        [(wall, None, true), (wall, Some(room), false), (bent, None, false), (hardly, None, true)]
     {
         let config = Config { room, ..Config::calibrated(T::ONE) };
         let mut tracker =

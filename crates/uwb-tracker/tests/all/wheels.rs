@@ -102,6 +102,23 @@ fn without_wheels_it_follows_the_ranges_and_says_how_well() {
 }
 
 #[test]
+fn a_sample_after_a_silence_says_nothing_about_the_silence() {
+    fn check<T: Scalar>() {
+        let mut drive = Drive::<T>::new();
+        drive.on(600, RIGHT, true);
+        assert!(drive.error() < 2.0, "{} m", drive.error());
+        // It stood meanwhile, and has just set off.
+        let time_us = 100_000 * drive.step + 10_000_000;
+        let (speed, turn_rate) = (T::ONE, T::ZERO);
+        drive.tracker.odometry(&OdometrySample { time_us, speed, turn_rate }).unwrap();
+        let sigma = drive.tracker.health(time_us).position_sigma;
+        let is_honest = sigma.is_none_or(|sigma| drive.error() < 3.0 * sigma.to_f64());
+        assert!(is_honest, "{} m, {sigma:?}", drive.error());
+    }
+    in_every_scalar!(check);
+}
+
+#[test]
 fn what_wheels_cannot_say_is_refused() {
     let mut drive = Drive::<f32>::new();
     drive.on(100, RIGHT, true);

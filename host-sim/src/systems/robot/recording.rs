@@ -189,7 +189,7 @@ impl Recording {
         if let Some(order) = sensors.put_in_order() {
             self.warn(order);
         }
-        if let Some(dropped) = sensors.drop_far_ahead() {
+        if let Some(dropped) = sensors.drop_wrong_times() {
             self.warn(dropped);
         }
         let truth = truth.map(Truth::Course);

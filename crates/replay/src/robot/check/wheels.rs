@@ -151,20 +151,21 @@ fn distance(a: &Epoch, b: &Epoch) -> Option<(f64, f64)> {
 fn way(events: &[Event]) -> Way {
     let mut way = Vec::new();
     let (mut place, mut heading) = ([0.0; 2], 0.0_f64);
-    let mut before: Option<Wheels> = None;
+    let mut before_us = None;
     for event in events {
         let Event::Wheels(wheels) = event else { continue };
         if !(wheels.speed.is_finite() && wheels.turn_rate.is_finite()) {
             continue;
         }
-        if let Some(before) = before {
-            let seconds = wheels.time_us.saturating_sub(before.time_us) as f64 * 1e-6;
-            let middle = heading + 0.5 * before.turn_rate * seconds;
-            place[0] += before.speed * seconds * middle.cos();
-            place[1] += before.speed * seconds * middle.sin();
-            heading += before.turn_rate * seconds;
+        if let Some(before_us) = before_us {
+            let seconds = wheels.time_us.saturating_sub(before_us) as f64 * 1e-6;
+            // A sample tells the motion since the one before.
+            let middle = heading + 0.5 * wheels.turn_rate * seconds;
+            place[0] += wheels.speed * seconds * middle.cos();
+            place[1] += wheels.speed * seconds * middle.sin();
+            heading += wheels.turn_rate * seconds;
         }
-        before = Some(*wheels);
+        before_us = Some(wheels.time_us);
         way.push((wheels.time_us, place));
     }
     way
