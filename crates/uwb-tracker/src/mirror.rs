@@ -14,9 +14,11 @@ const REACH: f64 = 3.0;
 const CLEAR: f64 = 3.0;
 /// Horizontal distance below which anchors count as one above the other, m.
 const NEAREST: f64 = 0.05;
-/// Distance from a line or plane within which anchors count as lying in it, in standard deviations of a range: they
-/// distinguish its two sides by less than their errors.
-const FLAT: f64 = 3.0;
+/// Distance within which anchors count as lying in a line, in standard deviations of a range: they distinguish its two sides by
+/// less than their errors, and the first position may be on either side.
+const FLAT_LINE: f64 = 3.0;
+/// The same for a plane, on one side of which anchors usually all are: whoever comes close to it is told apart by those around.
+const FLAT_PLANE: f64 = 1.0;
 /// Margin by which a position may be outside of the room, m, as in the search for a position.
 pub(crate) const ROOM_MARGIN: f64 = 0.5;
 
@@ -60,7 +62,7 @@ pub(crate) fn flat<T: Scalar, const D: usize>(
     links: &[Link<T>],
     range_sigma: T,
 ) -> Option<Mirror<D>> {
-    let near = range_sigma * T::from_f64(FLAT);
+    let near = range_sigma * T::from_f64(if D == 2 { FLAT_LINE } else { FLAT_PLANE });
     let mut chosen = Mirror::<D>::zeros();
     // The anchor farthest from those chosen before makes the line or plane most certain.
     for count in 1..=D {

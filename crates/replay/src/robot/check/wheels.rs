@@ -3,7 +3,7 @@
 use kestirim_health::{Health, Reason};
 
 use crate::Finding;
-use crate::robot::{Epoch, Event, Setup, Wheels, track};
+use crate::robot::{Epoch, Event, Setup, track};
 
 /// The time between the two places whose distance is compared, µs: neither the start nor the heading must be known.
 const APART_US: i64 = 5_000_000;
@@ -184,7 +184,7 @@ fn driven(way: &[(i64, [f64; 2])], from_us: i64, to_us: i64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::robot::Range;
+    use crate::robot::{Range, Wheels};
 
     const PLACES: [[f64; 3]; 4] =
         [[0.0, 0.0, 2.0], [8.0, 0.0, 2.0], [8.0, 6.0, 2.0], [0.0, 6.0, 2.0]];
