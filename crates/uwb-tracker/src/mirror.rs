@@ -17,7 +17,8 @@ const NEAREST: f64 = 0.05;
 /// Distance within which anchors count as lying in a line, in standard deviations of a range: they distinguish its two sides by
 /// less than their errors, and the first position may be on either side.
 const FLAT_LINE: f64 = 3.0;
-/// The same for a plane, on one side of which anchors usually all are: whoever comes close to it is told apart by those around.
+/// Distance within which anchors count as lying in a plane, likewise. Those that stand out of it by more tell its two sides
+/// apart in time.
 const FLAT_PLANE: f64 = 1.0;
 /// Margin by which a position may be outside of the room, m, as in the search for a position.
 pub(crate) const ROOM_MARGIN: f64 = 0.5;

@@ -40,6 +40,7 @@ impl Estimate {
         let (place, sd_m) = (cloud.mean, cloud.spread());
         Self {
             stop,
+            first: 0,
             place,
             sd_m,
             level_db: None,
