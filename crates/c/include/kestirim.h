@@ -496,7 +496,7 @@ typedef struct kestirim_gnss_satellite {
 typedef struct kestirim_gnss_observation {
   // Number of the satellite, unique among all systems: for example the PRN for GPS, 100 plus the number for Galileo.
   uint8_t satellite;
-  // 1 if the receiver reports a loss of lock since the last epoch, else 0.
+  // 1 if the receiver reports a loss of lock since the epoch with a position in which this satellite was last given, else 0.
   uint8_t lock_lost;
   // Frequency channel of a GLONASS satellite, -7 to 6; 0 for other systems.
   int8_t channel;
