@@ -56,7 +56,7 @@ impl<T> Timed<T> {
     }
 
     /// Whether a correction that was received now is to replace this one: messages may come late.
-    fn makes_way<S>(&self, newer: &Timed<S>, received: GpsTime) -> bool {
+    fn is_replaced_by(&self, newer: &Self, received: GpsTime) -> bool {
         newer.since.since(self.since) >= 0.0 || !self.is_current_at(received)
     }
 }
@@ -72,10 +72,10 @@ pub fn corrected(
     clock: &Timed<Clock>,
     sent: GpsTime,
 ) -> Option<SatelliteState> {
-    let do_serve = orbit.serves_at(sent) && clock.serves_at(sent) && ephemeris.holds_at(sent);
-    let do_belong =
+    let are_current = orbit.serves_at(sent) && clock.serves_at(sent) && ephemeris.holds_at(sent);
+    let are_of_one =
         orbit.value.is_of(ephemeris.issue) && orbit.configuration == clock.configuration;
-    if !do_serve || !do_belong || !ephemeris.accuracy.is_finite() {
+    if !are_current || !are_of_one || !ephemeris.accuracy.is_finite() {
         return None;
     }
     let offset = orbit.value.at(sent.since(orbit.reference));
@@ -184,7 +184,7 @@ impl<const N: usize> Corrected<N> {
     fn take_clock(&mut self, number: u8, clock: Timed<Clock>, received: GpsTime) {
         let Some(of) = self.satellites.iter_mut().find(|it| it.number == number) else { return };
         let is_of_ephemeris = clock.since.since(of.begun) >= 0.0;
-        let is_newer = of.clock.as_ref().is_none_or(|it| it.makes_way(&clock, received));
+        let is_newer = of.clock.as_ref().is_none_or(|it| it.is_replaced_by(&clock, received));
         if is_of_ephemeris && is_newer {
             of.clock = Some(clock);
         }
@@ -199,7 +199,7 @@ impl<const N: usize> Corrected<N> {
     ) {
         let place = self.satellites.iter().position(|it| it.number == number);
         let own = place.and_then(|place| self.satellites.get(place)).copied();
-        if own.is_some_and(|it| !it.orbit.makes_way(&orbit, received)) {
+        if own.is_some_and(|it| !it.orbit.is_replaced_by(&orbit, received)) {
             return;
         }
         let known = own.map(|it| it.ephemeris);
