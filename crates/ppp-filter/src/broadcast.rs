@@ -172,11 +172,12 @@ impl<const N: usize> Broadcast<N> {
         })
     }
 
-    /// The newest ephemeris of a satellite, with the clock of its own message.
+    /// The newest ephemeris of a satellite, with the clock of its own message, whichever carriers are observed: see
+    /// [`corrected`](crate::corrected).
     ///
     /// # Errors
     /// [`NoEphemeris`]: the satellite must not be used.
-    pub(crate) fn newest(&self, number: u8) -> Result<Ephemeris, NoEphemeris> {
+    pub fn newest(&self, number: u8) -> Result<Ephemeris, NoEphemeris> {
         let satellite = self.satellites.iter().find(|it| it.number == number);
         let dated = satellite.and_then(|it| it.newest.as_ref()).ok_or(NoEphemeris::Missing)?;
         dated.ephemeris(match dated.message {

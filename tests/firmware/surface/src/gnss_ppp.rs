@@ -109,7 +109,7 @@ fn satellites() {
 }
 
 /// Any ephemeris.
-pub(super) fn ephemeris() -> Ephemeris {
+fn ephemeris() -> Ephemeris {
     Ephemeris {
         constellation: one_of(Constellation::ALL),
         time: time(),

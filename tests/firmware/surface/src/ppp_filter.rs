@@ -15,7 +15,6 @@ use kestirim_ppp_filter::{
 };
 use kestirim_robust_kalman::{Decision, Measurement};
 
-use super::gnss_ppp::ephemeris;
 use super::values::{
     any, call_each, keep, matrix, maybe, number, numbers, one_of, rounds, slice, try_on, whole,
     yes_or_no,
@@ -179,7 +178,9 @@ fn take_corrections<const N: usize>(
         let clock = Timed::new(time, &message.header, clock);
         keep(Timed::since(&orbit));
         keep(Timed::serves_at(&clock, time));
-        keep(corrected(&ephemeris(), &orbit, &clock, time));
+        if let Ok(ephemeris) = any(Broadcast::newest(broadcast, one_of([1, 2, 3, 4, 5]))) {
+            keep(corrected(&ephemeris, &orbit, &clock, time));
+        }
     }
 }
 
