@@ -205,9 +205,7 @@ impl<const N: usize> Corrected<N> {
         let known = own.map(|it| it.ephemeris);
         let of_issue = newest.into_iter().chain(known).find(|it| orbit.value.is_of(it.issue));
         let Some(ephemeris) = of_issue else {
-            if let Some(place) = place {
-                self.satellites.swap_remove(place);
-            }
+            self.satellites.retain(|it| it.number != number);
             return;
         };
         let same = own.filter(|it| it.ephemeris == ephemeris);
