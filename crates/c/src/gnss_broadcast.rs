@@ -147,24 +147,26 @@ pub unsafe extern "C" fn kestirim_gnss_broadcast_at(
             return Err(Status::NotFinite);
         }
         let found = broadcast.state(satellite, carriers(on, 0)?, received.instant(), code);
-        let found = found.map_err(|reason| match reason {
-            NoEphemeris::Unhealthy => Status::Unhealthy,
-            NoEphemeris::Carriers => Status::NoGroupDelay,
-            _ => Status::Gap,
-        })?;
-        answer.write(satellite_state(&found));
+        answer.write(satellite_state(found)?);
         Ok(())
     })
 }
 
-/// A satellite's state as C has it.
-pub(crate) fn satellite_state(state: &SatelliteState) -> GnssSatellite {
-    GnssSatellite {
+/// A satellite's state as C has it, or the status for the reason why there is none.
+pub(crate) fn satellite_state(
+    found: Result<SatelliteState, NoEphemeris>,
+) -> Result<GnssSatellite, Status> {
+    let state = found.map_err(|reason| match reason {
+        NoEphemeris::Unhealthy => Status::Unhealthy,
+        NoEphemeris::Carriers => Status::NoGroupDelay,
+        _ => Status::Gap,
+    })?;
+    Ok(GnssSatellite {
         position: *state.position.as_array(),
         velocity: *state.velocity.as_array(),
         clock: state.clock,
         clock_interval: state.clock_interval,
         clock_distance: state.clock_distance,
         accuracy: state.accuracy,
-    }
+    })
 }

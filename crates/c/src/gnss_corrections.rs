@@ -5,7 +5,7 @@ use core::ffi::c_void;
 
 use kestirim_gnss_message::frame_data;
 use kestirim_gnss_message::ssr::{Message, System};
-use kestirim_ppp_filter::{Corrected, NoEphemeris};
+use kestirim_ppp_filter::Corrected;
 
 use crate::gnss_broadcast::{GnssBroadcast, MOST_BROADCAST, satellite_state};
 use crate::memory::{self, Handle, argument, array, held, held_mut, place, status};
@@ -109,11 +109,7 @@ pub unsafe extern "C" fn kestirim_gnss_corrections_at(
             return Err(Status::NotFinite);
         }
         let found = corrections.state(satellite, broadcast, received.instant(), code);
-        let found = found.map_err(|reason| match reason {
-            NoEphemeris::Unhealthy => Status::Unhealthy,
-            _ => Status::Gap,
-        })?;
-        answer.write(satellite_state(&found));
+        answer.write(satellite_state(found)?);
         Ok(())
     })
 }

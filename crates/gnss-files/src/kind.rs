@@ -69,6 +69,11 @@ impl Kind {
         Ok(Self::of(&unpacked))
     }
 
+    /// Whether it is a recorded stream, UBX or RTCM 3, which may contain ephemerides.
+    pub const fn is_stream(self) -> bool {
+        matches!(self, Self::Ubx | Self::Rtcm | Self::Corrections)
+    }
+
     /// The kind of unpacked contents, or of their beginning; `None` if they are of no format that this crate knows.
     pub fn of(bytes: &[u8]) -> Option<Self> {
         let first = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();

@@ -157,17 +157,16 @@ fn marker() -> Vector3<f64> {
     truth + up * (HEIGHT - height)
 }
 
-/// Runs the application, which leaves out a satellite for a reason and has no position in some first epochs. Returns the position's
+/// Runs the application, which leaves out an unhealthy satellite and has no position in some first epochs. Returns the position's
 /// error and deviation after the last epoch, m, and the largest quotient of any two.
-fn run(receiver: &[u8], source: impl Source, left_out: (u8, Unusable), without: usize) -> [f64; 3] {
-    let (unhealthy, reason) = left_out;
+fn run(receiver: &[u8], source: impl Source, unhealthy: u8, without: usize) -> [f64; 3] {
     let mut app = App::new(receiver, source, Sink);
     let truth = marker();
     let (mut epochs, mut told) = (0_usize, Vec::new());
     while let Some(epoch) = app.poll(0).expect("no port fails") {
         epochs += 1;
         let left_out = epoch.unused.iter().find(|it| it.satellite == unhealthy);
-        assert!(epochs < 3 || left_out.is_none_or(|it| it.reason == reason));
+        assert!(epochs < 3 || left_out.is_none_or(|it| it.reason == Unusable::Unhealthy));
         if let Ok(solution) = epoch.solution {
             let sigma = solution.covariance.trace().sqrt();
             told.push(((solution.position - truth).norm(), sigma));
@@ -188,8 +187,7 @@ fn a_receiver_alone_finds_its_place() {
     let Some(folder) = folder_of("gnss") else { return };
     let (receiver, unhealthy) = recorded(&folder);
     // The first epoch comes before any ephemeris.
-    let left_out = (unhealthy, Unusable::Unhealthy);
-    let [last, sigma, most] = run(&receiver, Broadcasts::default(), left_out, 1);
+    let [last, sigma, most] = run(&receiver, Broadcasts::default(), unhealthy, 1);
     assert!(last < 1.0 && sigma < 5.0 && most < 1.0);
 }
 
@@ -232,7 +230,6 @@ fn with_the_corrections_of_a_service_it_is_centimetres_off() {
     let frames = ssr::frames(&ephemerides, &products(&folder));
     let modem = Modem(frames.into_iter().map(VecDeque::from).collect());
     // The first corrections that are of use come after the first ephemerides.
-    let left_out = (unhealthy, Unusable::Unhealthy);
-    let [last, sigma, most] = run(&receiver, Corrections::new(modem), left_out, 2);
+    let [last, sigma, most] = run(&receiver, Corrections::new(modem), unhealthy, 2);
     assert!(last < 0.05 && sigma < 0.3 && most < 2.0);
 }

@@ -117,9 +117,7 @@ impl Broadcast {
         let ephemeris = own.at(sent).ok_or(Unusable::NoOrbit)?;
         if let Some(ssr) = &self.ssr {
             let state = ssr.state(satellite, &own.corrected, sent).ok_or(Unusable::NoClock)?;
-            // A corrected code refers to the service's clock by itself.
-            let is_corrected = self.of_codes(satellite, sent).is_some();
-            return Ok((state, if is_corrected { 0.0 } else { ephemeris.group_delay }));
+            return Ok((state, ephemeris.group_delay));
         }
         let clock = ephemeris.clock_at(sent);
         let orbit = ephemeris.orbit_at(sent.plus(-clock));

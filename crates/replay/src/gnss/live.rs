@@ -137,9 +137,7 @@ impl Live {
     /// Drops what precedes the stream, such as the lines of a receiver that has not yet been told to send one; returns
     /// whether the stream has begun.
     fn find_beginning(&mut self) -> bool {
-        let is_stream = |bytes: &[u8]| {
-            matches!(Kind::of(bytes), Some(Kind::Ubx | Kind::Rtcm | Kind::Corrections))
-        };
+        let is_stream = |bytes: &[u8]| Kind::of(bytes).is_some_and(Kind::is_stream);
         let begins = (0..self.kept.len()).step_by(STEP).find(|&at| is_stream(&self.kept[at..]));
         // A message may have begun in the last bytes.
         let last = self.kept.len().saturating_sub(LONGEST);

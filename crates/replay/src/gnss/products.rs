@@ -154,7 +154,7 @@ impl Products {
             return Err(Unusable::Incomplete);
         };
         let (state, _) = self.state(observed.prn, time, first)?;
-        let [of_first, of_second] = self.of_codes(observed.prn, time);
+        let [of_first, of_second] = self.of_codes(observed.prn, time).unwrap_or_default();
         Ok(SatelliteObservation {
             satellite: observed.prn,
             carriers: carriers(observed.carriers),
@@ -177,22 +177,23 @@ impl Products {
     ) -> Result<CodeObservation<'_>, Unusable> {
         let first = observed.code[0].ok_or(Unusable::Incomplete)?;
         let (state, group_delay) = self.state(observed.prn, time, first)?;
-        let [of_first, of_second] = self.of_codes(observed.prn, time);
+        let of_codes = self.of_codes(observed.prn, time);
+        let [of_first, of_second] = of_codes.unwrap_or_default();
         let [first, second] = observed.code;
         Ok(CodeObservation {
             satellite: observed.prn,
             carriers: carriers(observed.carriers),
             code: [first.map(|it| it + of_first), second.map(|it| it + of_second)],
-            group_delay,
+            // A corrected code refers to the service's clock by itself.
+            group_delay: if of_codes.is_some() { 0.0 } else { group_delay },
             state,
             antenna: self.antenna(observed),
         })
     }
 
-    /// What a service's corrections add to the codes of a satellite, m.
-    fn of_codes(&self, number: u8, time: GpsTime) -> [f64; 2] {
-        let broadcast = self.broadcast.as_ref();
-        broadcast.and_then(|broadcast| broadcast.of_codes(number, time)).unwrap_or_default()
+    /// What a service's corrections add to the codes of a satellite, m, if it is known.
+    fn of_codes(&self, number: u8, time: GpsTime) -> Option<[f64; 2]> {
+        self.broadcast.as_ref()?.of_codes(number, time)
     }
 
     /// The edition of the antenna model used for a satellite, if it is stated.

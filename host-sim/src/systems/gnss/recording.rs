@@ -60,7 +60,7 @@ pub fn read(files: &Files) -> Result<Recording, Error> {
 
 /// Whether a file is a recorded stream, which may contain broadcast ephemerides.
 pub fn is_stream(path: &Path) -> bool {
-    matches!(Kind::of_file(path), Ok(Some(Kind::Ubx | Kind::Rtcm | Kind::Corrections)))
+    matches!(Kind::of_file(path), Ok(Some(kind)) if kind.is_stream())
 }
 
 /// The first hours of a synthetic day by name.

@@ -2,7 +2,7 @@
 
 use kestirim_gnss_message::gps::Subframe;
 use kestirim_gnss_ppp::{Carriers, GpsTime, Pattern, SatelliteState};
-use kestirim_ppp_filter::{Broadcast, Config, Lean, MessagePart, NoEphemeris};
+use kestirim_ppp_filter::{Broadcast, Config, Lean, MessagePart};
 
 use crate::source::{Source, Unusable};
 use crate::{Error, site};
@@ -29,11 +29,7 @@ impl Source for Broadcasts {
         received: GpsTime,
         code: f64,
     ) -> Result<SatelliteState, Unusable> {
-        self.0.state(satellite, Carriers::L1L2, received, code).map_err(|reason| match reason {
-            NoEphemeris::Unhealthy => Unusable::Unhealthy,
-            // LNAV always has the clock of L1 and L2.
-            _ => Unusable::NoOrbit,
-        })
+        Ok(self.0.state(satellite, Carriers::L1L2, received, code)?)
     }
 
     fn antenna(&self) -> Option<[Pattern<'static>; 2]> {

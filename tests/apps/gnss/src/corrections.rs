@@ -4,7 +4,7 @@ use embedded_io::{Read, ReadReady};
 use kestirim_gnss_message::gps::Subframe;
 use kestirim_gnss_message::ssr::{Message, System};
 use kestirim_gnss_ppp::{GpsTime, Pattern, SatelliteState};
-use kestirim_ppp_filter::{Broadcast, Config, Corrected, Lean, MessagePart, NoEphemeris};
+use kestirim_ppp_filter::{Broadcast, Config, Corrected, Lean, MessagePart};
 
 use crate::frames::Frames;
 use crate::source::{Source, Unusable};
@@ -59,11 +59,7 @@ impl<M: Read + ReadReady> Source for Corrections<M> {
         received: GpsTime,
         code: f64,
     ) -> Result<SatelliteState, Unusable> {
-        let state = self.corrected.state(satellite, &self.broadcast, received, code);
-        state.map_err(|reason| match reason {
-            NoEphemeris::Unhealthy => Unusable::Unhealthy,
-            _ => Unusable::NoOrbit,
-        })
+        Ok(self.corrected.state(satellite, &self.broadcast, received, code)?)
     }
 
     fn antenna(&self) -> Option<[Pattern<'static>; 2]> {

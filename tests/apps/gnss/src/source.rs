@@ -2,7 +2,7 @@
 
 use kestirim_gnss_message::gps::Subframe;
 use kestirim_gnss_ppp::{Carriers, GpsTime, Pattern, SatelliteState};
-use kestirim_ppp_filter::{Config, Lean, SatelliteObservation};
+use kestirim_ppp_filter::{Config, Lean, NoEphemeris, SatelliteObservation};
 
 use crate::Error;
 use crate::observations::Observed;
@@ -22,6 +22,16 @@ pub enum Unusable {
     Unhealthy,
     /// More satellites are in view than the filter has room for.
     NoRoom,
+}
+
+impl From<NoEphemeris> for Unusable {
+    fn from(reason: NoEphemeris) -> Self {
+        match reason {
+            NoEphemeris::Unhealthy => Self::Unhealthy,
+            // LNAV always has the clock of L1 and L2.
+            _ => Self::NoOrbit,
+        }
+    }
 }
 
 /// A source of orbits and clocks.
