@@ -51,7 +51,7 @@ impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
         self.measurements.map(|(noise, _)| noise)
     }
 
-    /// Begins an epoch: adapts Q to what the updates of the last epoch changed, then predicts by `process`, which
+    /// Begins an epoch: adapts Q to what the updates of the last epoch, if there were any, changed, then predicts by `process`, which
     /// must add no noise of its own.
     ///
     /// # Errors
@@ -59,7 +59,10 @@ impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
     #[inline]
     pub fn predict(&mut self, process: &impl Process<T, N>) -> Result<(), Error> {
         let mut noise = self.process_noise;
-        noise.learn(&(self.estimate.mean - self.predicted.mean));
+        // Without a measurement nothing was learnt of it: an update changes a variance.
+        if self.estimate.covariance.variances() != self.predicted.covariance.variances() {
+            noise.learn(&(self.estimate.mean - self.predicted.mean));
+        }
         self.estimate.advance(&WithNoise { process, noise: &noise })?;
         self.process_noise = noise;
         self.predicted = self.estimate;

@@ -72,6 +72,20 @@ fn a_measurement_that_contradicts_the_others_is_learnt_to_be_bad() {
 }
 
 #[test]
+fn epochs_without_a_measurement_teach_nothing() {
+    let (filter, _) = blocked::<f64>(true);
+    let learnt = *filter.process_noise();
+    let mut waiting = filter;
+    waiting.predict(&Still).unwrap();
+    let after_one = *waiting.process_noise();
+    for _ in 0..100 {
+        waiting.predict(&Still).unwrap();
+    }
+    assert_ne!(after_one, learnt, "the last epoch has taught");
+    assert_eq!(*waiting.process_noise(), after_one);
+}
+
+#[test]
 fn learning_must_make_sense() {
     for (forgetting, least, most) in [
         (1.1, 0.0, 1.0),

@@ -34,6 +34,10 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         innovation: &SVector<T, M>,
         noise: &Covariance<T, M>,
     ) -> Result<BlockInnovation<T, M>, Error> {
+        // In fixed point a difference may leave the rail.
+        if !(T::SPREADS || T::all_finite(innovation.as_array())) {
+            return Err(Error::NotFinite);
+        }
         let covariance = self.expected_spread(rows, noise);
         let (rows, independent, variances) = decorrelated(rows, innovation, noise)?;
         let mut next = *self;

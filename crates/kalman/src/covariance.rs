@@ -1,3 +1,4 @@
+use crate::Error;
 use crate::gaussian::MANY;
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
@@ -253,7 +254,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     /// P ← P − k·gᵀ for the gain k = g/S and g = P hᵀ.
     #[inline(always)]
     pub(crate) fn downdate(&mut self, gain: &[T; N], g: &[T; N]) {
-        self.absorb_rounding();
+        self.absorb_rounding_of(g);
         for column in 0..N {
             // Among many states, some have nothing to do with the measurement, such as ambiguities of satellites out of
             // view.
@@ -261,7 +262,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
                 continue;
             }
             for row in column..N {
-                self.lower.data.0[column][row] -= gain[row] * g[column];
+                self.lower.data.0[column][row] -= taken(gain, g, row, column);
             }
         }
     }
@@ -269,11 +270,11 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     /// P ← P − k·gᵀ as in [`Covariance::downdate`], for all entries but row and column `i`.
     #[inline(always)]
     pub(crate) fn downdate_beside(&mut self, i: usize, gain: &[T; N], g: &[T; N]) {
-        self.absorb_rounding();
+        self.absorb_rounding_of(g);
         for column in 0..N {
             for row in column..N {
                 if row != i && column != i {
-                    self.lower.data.0[column][row] -= gain[row] * g[column];
+                    self.lower.data.0[column][row] -= taken(gain, g, row, column);
                 }
             }
         }
@@ -301,6 +302,38 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         }
     }
 
+    /// [`Covariance::absorb_rounding`] before an update: in fixed point half a unit of the gain counts |g| times.
+    #[inline(always)]
+    fn absorb_rounding_of(&mut self, g: &[T; N]) {
+        if T::SPREADS {
+            return self.absorb_rounding();
+        }
+        for index in 0..N {
+            let variance = &mut self.lower.data.0[index][index];
+            *variance += variance.max(g[index].abs()).rounding(Self::ROUNDINGS);
+        }
+    }
+
+    /// Refuses an update in fixed point of variances on a rail, from which it would move them as if they were known, or after
+    /// which one would be negative. (Those of floats stay infinite, and positive.)
+    #[inline(always)]
+    pub(crate) fn can_lose(&self, gain: &[T; N], g: &[T; N]) -> Result<(), Error> {
+        if T::SPREADS {
+            return Ok(());
+        }
+        for index in 0..N {
+            let variance = self.lower.data.0[index][index];
+            if !variance.is_finite() {
+                return Err(Error::NotFinite);
+            }
+            let absorbed = variance.max(g[index].abs()).rounding(Self::ROUNDINGS);
+            if variance + absorbed < gain[index] * g[index] {
+                return Err(Error::NotPositive);
+            }
+        }
+        Ok(())
+    }
+
     /// P\[i, j\] for indices below N that the compiler does not know: one bounds check and no panic.
     #[inline(always)]
     pub(crate) fn known(&self, i: usize, j: usize) -> T {
@@ -326,5 +359,16 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     #[inline(always)]
     pub(crate) fn entry(&mut self, i: usize, j: usize) -> &mut T {
         if i >= j { &mut self.lower.data.0[j][i] } else { &mut self.lower.data.0[i][j] }
+    }
+}
+
+/// An entry of k·gᵀ, which is symmetric. In fixed point the rounding of the gain counts as often as the other factor is large:
+/// the smaller one is taken.
+#[inline(always)]
+fn taken<T: Scalar, const N: usize>(gain: &[T; N], g: &[T; N], row: usize, column: usize) -> T {
+    if T::SPREADS || g[column].abs() <= g[row].abs() {
+        gain[row] * g[column]
+    } else {
+        gain[column] * g[row]
     }
 }

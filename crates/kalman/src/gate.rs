@@ -101,10 +101,11 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         let factor = ((wanted - weighed.noise()) / weighed.spread()).max(T::ONE);
         let mut next = *self;
         next.covariance.scale(factor);
-        next.correct(&weighed.scaled(factor)?)?;
+        // Before the update, which would move an entry of fixed point off its rail.
         if !(factor.is_finite() && next.covariance.is_finite()) {
             return Err(Error::NotFinite);
         }
+        next.correct(&weighed.scaled(factor)?)?;
         *self = next;
         Ok(weighed.report())
     }

@@ -1,6 +1,6 @@
 use crate::innovation::Weights;
 use crate::{Covariance, Error, Innovation, Linear, Observation, Process, SparseRow, Weighed};
-use kestirim_scalar::{Components, Scalar};
+use kestirim_scalar::{Columns, Components, Scalar};
 use nalgebra::{SMatrix, SVector};
 
 /// Number of states from which on P is traversed by columns, most of which are then long: fewer bounds checks, same
@@ -55,9 +55,16 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     /// For a sparse F, [`Covariance::shear`] costs a fraction: see [`Process`].
     ///
     /// # Errors
-    /// [`Error::NotFinite`] if F or Q is not finite or the estimate would become so.
+    /// [`Error::NotFinite`] if F or Q is not finite or the estimate would become so; [`Error::NotPositive`] if a variance of Q
+    /// is negative. The estimate is untouched.
     #[inline]
     pub fn predict(&mut self, f: &SMatrix<T, N, N>, q: &Covariance<T, N>) -> Result<(), Error> {
+        if !(q.is_finite() && T::all_finite(f.as_columns().as_flattened())) {
+            return Err(Error::NotFinite);
+        }
+        if q.variances().as_array().iter().any(|&variance| variance < T::ZERO) {
+            return Err(Error::NotPositive);
+        }
         self.advance(&Linear { f, q })
     }
 
@@ -159,8 +166,8 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     /// ([`SparseRow::dot`] helps with linear ones, [`Gaussian::observe`] with both).
     ///
     /// # Errors
-    /// [`Error::NotFinite`], [`Error::NotPositive`] or [`Error::IndexOutOfRange`]; the estimate is
-    /// untouched.
+    /// [`Error::NotFinite`], [`Error::NotPositive`] (R or, in fixed point, a variance after the update) or
+    /// [`Error::IndexOutOfRange`]; the estimate is untouched.
     #[inline]
     pub fn update<const K: usize>(
         &mut self,
@@ -210,7 +217,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     /// Takes in a measurement that was weighed against exactly this estimate.
     ///
     /// # Errors
-    /// [`Error::NotFinite`]; the estimate is untouched.
+    /// [`Error::NotFinite`], and in fixed point [`Error::NotPositive`]; the estimate is untouched.
     #[inline(always)]
     pub fn correct(&mut self, weighed: &Weighed<T, N>) -> Result<Innovation<T>, Error> {
         self.take_in(&weighed.weights, &weighed.cross)
@@ -298,6 +305,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         if !T::all_finite(&mean) {
             return Err(Error::NotFinite);
         }
+        self.covariance.can_lose(gain, cross)?;
         *self.mean.as_array_mut() = mean;
         Ok(())
     }

@@ -71,9 +71,6 @@ impl<T: Scalar> Weights<T> {
 
 /// A measurement weighed against an estimate that it has not changed yet.
 ///
-/// Gates and robust weights inspect it, may change its noise, and take it in with
-/// [`Gaussian::correct`](crate::Gaussian::correct) or drop it.
-///
 /// Gates and robust weights look at it, may change its noise, and take it in with
 /// [`Gaussian::correct`](crate::Gaussian::correct) or drop it.
 #[derive(Clone, Copy, Debug, PartialEq)]

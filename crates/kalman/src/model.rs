@@ -70,6 +70,10 @@ impl<T: Scalar, const N: usize, const K: usize> Observation<T, N> for LinearObse
 
     #[inline]
     fn linearise(&self, mean: &SVector<T, N>) -> Result<(T, SparseRow<T, K>), Error> {
+        // In fixed point the difference may leave the rail.
+        if !(T::SPREADS || self.measured.is_finite()) {
+            return Err(Error::NotFinite);
+        }
         let expected = self.row.dot(mean).ok_or(Error::IndexOutOfRange)?;
         Ok((self.measured - expected, self.row))
     }

@@ -13,9 +13,9 @@ use kestirim_scalar::{Components, Scalar};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ConstantVelocity<T, const D: usize> {
-    /// h, the length of the step, s.
+    /// h, the length of the step, s: not negative.
     pub interval: T,
-    /// q, the power spectral density of the acceleration, m²/s³.
+    /// q, the power spectral density of the acceleration, m²/s³: not negative.
     pub acceleration_density: T,
     /// τ, the time constant with which the velocity decays, s; `None` for no decay.
     pub decay_time: Option<T>,
@@ -33,18 +33,19 @@ impl<T: Scalar, const D: usize> ConstantVelocity<T, D> {
     #[inline]
     fn coefficients(&self) -> (T, T, [T; 3]) {
         let h = self.interval;
+        // Fixed point would leave its rail in a product with a number below one: such factors come first.
         let gained = self.acceleration_density * h;
         let third = T::from_f64(1.0 / 3.0);
         let Some(tau) = self.decay_time else {
-            return (h, T::ONE, [gained * h * h * third, gained * h * T::HALF, gained]);
+            return (h, T::ONE, [gained * third * h * h, gained * T::HALF * h, gained]);
         };
         let divisor = (tau + h).divisor();
         let decay = tau.divided_by(divisor);
         let reach = h * decay;
         // Both tend to those of white noise for h ≪ τ and to those of the settled process for h ≫ τ.
-        let velocity = gained * decay * (T::ONE + decay) * T::HALF;
-        let position = gained * reach * reach * third * (T::ONE + T::TWO * h.divided_by(divisor));
-        (reach, decay, [position, velocity * reach * T::HALF, velocity])
+        let velocity = gained * T::HALF * decay * (T::ONE + decay);
+        let position = gained * third * reach * reach * (T::ONE + T::TWO * h.divided_by(divisor));
+        (reach, decay, [position, velocity * T::HALF * reach, velocity])
     }
 }
 
@@ -59,7 +60,7 @@ impl<T: Scalar, const D: usize, const N: usize> Process<T, N> for ConstantVeloci
             mean[D + axis] *= decay;
             if let Some(acceleration) = &self.acceleration {
                 let gained = self.interval * acceleration[axis];
-                mean[axis] += gained * self.interval * T::HALF;
+                mean[axis] += gained * T::HALF * self.interval;
                 mean[D + axis] += gained;
             }
         }

@@ -142,8 +142,15 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const D: usize>
     /// y − C x̂ − S d̂, the innovation that [`DisturbanceObserver::step`] with this measurement would use.
     #[inline]
     pub fn innovation(&self, measured: &SVector<T, P>) -> SVector<T, P> {
+        let [_, innovation] = self.differences(measured);
+        innovation
+    }
+
+    /// y − C x̂, and y − C x̂ − S d̂.
+    #[inline]
+    fn differences(&self, measured: &SVector<T, P>) -> [SVector<T, P>; 2] {
         let unexpected = self.unseen_state.added(measured, &self.estimate.value);
-        self.unseen_learnt.added(&unexpected, &self.learnt.value)
+        [unexpected, self.unseen_learnt.added(&unexpected, &self.learnt.value)]
     }
 
     /// Moves on by one step with the inputs that the actuators applied and a measurement made at the estimate's time;
@@ -157,8 +164,9 @@ impl<T: Scalar, const N: usize, const M: usize, const P: usize, const D: usize>
         input: &SVector<T, M>,
         measured: &SVector<T, P>,
     ) -> Result<SVector<T, P>, Error> {
-        let innovation = self.innovation(measured);
-        let arguments = [innovation.as_array(), measured.as_array()];
+        let [unexpected, innovation] = self.differences(measured);
+        // In fixed point each sum may leave the rail of the one before.
+        let arguments = [innovation.as_array(), unexpected.as_array(), measured.as_array()];
         if !(T::all_finite(input.as_array()) && arguments.iter().all(|&all| T::all_finite(all))) {
             return Err(Error::NotFinite);
         }

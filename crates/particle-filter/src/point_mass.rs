@@ -121,14 +121,18 @@ impl<T: Scalar, const D: usize, const N: usize> PointMass<T, D, N> {
         let points = Lattice::new(&self.region, self.len());
         let (mut low, mut high) = bounds(&self.weights, &points, |log| log > -depth);
         // The spacing of points as a share of the side: N^(−1/D).
-        let share =
-            (-T::from_binary(self.len() as i32, 0).ln() / T::from_binary(D as i32, 0)).exp();
         let (old, mut volume) = (self.region.width(), T::ONE);
+        // An axis without width has nothing to become smaller.
+        let axes = old.iter().filter(|&&width| width > T::ZERO).count().max(1);
+        let share =
+            (-T::from_binary(self.len() as i32, 0).ln() / T::from_binary(axes as i32, 0)).exp();
         for axis in 0..D {
             let room = old[axis] * share;
             low[axis] = (low[axis] - room).max(self.region.low()[axis]);
             high[axis] = (high[axis] + room).min(self.region.high()[axis]);
-            volume *= (high[axis] - low[axis]) / old[axis].max(T::EPSILON);
+            if old[axis] > T::ZERO {
+                volume *= (high[axis] - low[axis]) / old[axis];
+            }
         }
         let smaller = volume < T::from_f64(0.9);
         Region::new(low, high).ok().filter(|_| smaller)

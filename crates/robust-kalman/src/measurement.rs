@@ -23,6 +23,10 @@ impl<'a, T: Scalar> Measurement<'a, T> {
     /// as zeros: the update has already refused them.
     #[inline(always)]
     pub(crate) fn left<const N: usize>(&self, prior: &Gaussian<T, N>, now: &Gaussian<T, N>) -> T {
+        // In fixed point the difference would leave the rail, and be taken for a measurement.
+        if !(T::SPREADS || self.innovation.is_finite()) {
+            return self.innovation;
+        }
         let (before, after) = (prior.mean.as_array(), now.mean.as_array());
         let mut sum = T::accumulator();
         for &(index, value) in self.row {

@@ -4,4 +4,5 @@ mod against_textbook;
 mod covariance_forms;
 mod filters;
 mod inflate;
+mod rails;
 mod single_parts;

@@ -5,7 +5,7 @@ use kestirim_luenberger::{
     CurrentGains, CurrentObserver, DisturbanceGains, DisturbanceObserver, Error, Plant, Predictor,
     PredictorGains, ReducedGains, ReducedObserver, Saturation,
 };
-use kestirim_scalar::{Q8_24, Q16_16, Scalar};
+use kestirim_scalar::{Q8_24, Q12_20, Q16_16, Scalar};
 use nalgebra::{Matrix1, Matrix1x2, Matrix2, Matrix3x2, SMatrix, SVector, Vector1, Vector2};
 use proptest::prelude::*;
 
@@ -35,6 +35,21 @@ fn limits_are_checked() {
     assert_eq!(limits.applied(&Vector1::new(-1e300))[0], -1e300);
     assert_eq!(limits.applied(&Vector1::new(f64::INFINITY))[0], 1.0);
     assert!(limits.applied(&Vector1::new(f64::NAN))[0].is_nan());
+}
+
+/// In fixed point the innovation is summed in two steps: the first leaves the range, and the second comes back.
+#[test]
+fn a_difference_that_left_the_range_is_no_innovation() {
+    let number = Q12_20::from_f64;
+    let plant = Plant { a: Matrix1::new(1.0), b: Matrix1::new(0.0), c: Matrix1::new(1.0) };
+    let one = Matrix1::new(1.0);
+    let gains = DisturbanceGains::new(&plant, &one, &one, &Matrix1::new(0.1), &Matrix1::new(0.1));
+    let (start, learnt) = (Vector1::new(number(-1500.0)), Vector1::new(number(5.0)));
+    let mut observer =
+        DisturbanceObserver::<Q12_20, 1, 1, 1, 1>::new(&gains, &start, &learnt).unwrap();
+    let before = observer;
+    let found = observer.step(&SVector::zeros(), &Vector1::new(number(1500.0)));
+    assert_eq!((found, observer), (Err(Error::NotFinite), before));
 }
 
 fn refuses<T: Scalar>(bad: T) {

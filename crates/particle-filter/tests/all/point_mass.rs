@@ -44,6 +44,17 @@ fn a_narrow_bell_is_found_and_measured() -> Result<(), Error> {
 }
 
 #[test]
+fn an_axis_without_width_is_not_refined_for_ever() -> Result<(), Error> {
+    let region = Region::new([0.0, 5.0], [1.0, 5.0])?;
+    let mut filter = PointMass::<f64, 2, 100>::new(&region);
+    assert!(filter.finer(12.0).is_none());
+    filter.update(|[x, _]| -0.5 * ((x - 0.3) / 0.01_f64).powi(2))?;
+    let finer = filter.finer(12.0).expect("a finer lattice");
+    assert!(finer.region().width()[0] < 0.2 && finer.region().width()[1] == 0.0);
+    Ok(())
+}
+
+#[test]
 fn nothing_is_refined_that_fills_the_region() -> Result<(), Error> {
     let region = Region::new([0.0, 0.0], [1.0, 1.0])?;
     let mut filter = PointMass::<f64, 2, 100>::new(&region);

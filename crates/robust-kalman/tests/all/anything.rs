@@ -10,6 +10,22 @@ use kestirim_scalar::{Q12_20, Q16_16, Scalar};
 use nalgebra::{SMatrix, SVector};
 use proptest::prelude::*;
 
+#[test]
+fn a_number_that_is_none_is_no_innovation_of_fixed_point() {
+    let before =
+        Gaussian::<Q12_20, 1>::new(SVector::zeros(), Covariance::from_variances(&[Q12_20::ONE]));
+    let row = [(0, Q12_20::ONE)];
+    let measured = [-Q12_20::ONE, Q12_20::from_f32(f32::NAN)];
+    let variance = Q12_20::ONE;
+    let both = measured.map(|innovation| Measurement { row: &row, innovation, variance });
+    let mut estimate = before;
+    let mut decisions = [Decision::NONE; 2];
+    let found = Robust::plain().update(&mut estimate, &both, &mut decisions);
+    assert!(found.is_err());
+    assert_eq!(estimate, before);
+    assert!(jump(&estimate, &both, Block::new(0, 1)).is_err());
+}
+
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         200 => -3.0..3.0f64,
