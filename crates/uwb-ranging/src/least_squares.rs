@@ -87,7 +87,8 @@ impl<T: Scalar> Solver<T> {
         Self { height, room: None, common_bias: None, huber: None }
     }
 
-    /// The best-fitting position, inside the room if one is set. [`Search`] finds it a few steps at a time.
+    /// The best-fitting position, inside the room if one is set; where others fit alike, the one that the iterations from `start`
+    /// (m) reach, if it is given. [`Search`] finds one a few steps at a time.
     ///
     /// # Errors
     /// [`Error::TooFewRanges`], [`Error::NotFinite`] or [`Error::NotPositive`] for invalid observations;

@@ -31,8 +31,21 @@ pub struct Search<T: Scalar, const D: usize> {
     /// Index of the next start around the anchors' centre.
     next: u8,
     best: Option<Found<T, D>>,
-    is_exact: bool,
+    aim: Aim,
     failure: Error,
+}
+
+/// What a search is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+enum Aim {
+    /// A filter's first position: the first good minimum is enough.
+    Begin,
+    /// The best of all minima.
+    Best,
+    /// The best of all minima, but the one that the caller's start leads to where others fit alike.
+    BestNear,
 }
 
 /// Iterations that come within this distance of an earlier minimum are taken to lead there, m.
@@ -63,12 +76,18 @@ impl<T: Scalar, const D: usize> Search<T, D> {
     /// The state before the first step: from `start` (m) if one is given, and then from starts among the anchors.
     pub fn new(start: Option<SVector<T, D>>) -> Self {
         let descent = start.map(Descent::from);
-        Self { descent, next: 0, best: None, is_exact: false, failure: Error::NotConverged }
+        Self { descent, next: 0, best: None, aim: Aim::Begin, failure: Error::NotConverged }
     }
 
     /// A search that follows every start to the end.
     pub(crate) fn exact(start: Option<SVector<T, D>>) -> Self {
-        Self { is_exact: true, ..Self::new(start) }
+        let aim = if start.is_some() { Aim::BestNear } else { Aim::Best };
+        Self { aim, ..Self::new(start) }
+    }
+
+    /// Whether every start is followed to the end.
+    fn is_exact(&self) -> bool {
+        self.aim != Aim::Begin
     }
 
     /// The state before the first step, from this start (m) alone.
@@ -87,7 +106,7 @@ impl<T: Scalar, const D: usize> Search<T, D> {
         steps: usize,
     ) -> Result<Option<&Fix<T, D>>, Error> {
         let noise = Noise::new(least_variance::<T, D>(observations)?);
-        let care = if self.is_exact { Care::exact() } else { Care::rough() };
+        let care = if self.is_exact() { Care::exact() } else { Care::rough() };
         for _ in 0..steps {
             let next = &mut self.next;
             let descent = self.descent.get_or_insert_with(|| {
@@ -108,7 +127,8 @@ impl<T: Scalar, const D: usize> Search<T, D> {
             }
             self.descent = None;
             let is_good_enough = |best: &Found<T, D>| best.is_good_enough(observations.len());
-            if self.next >= Self::STARTS || self.best.as_ref().is_some_and(is_good_enough) {
+            let is_enough = !self.is_exact() && self.best.as_ref().is_some_and(is_good_enough);
+            if self.next >= Self::STARTS || is_enough {
                 return self.best.as_ref().map(|best| Some(&best.fix)).ok_or(self.failure);
             }
         }
@@ -124,7 +144,7 @@ impl<T: Scalar, const D: usize> Search<T, D> {
         moved: T,
     ) -> bool {
         let Some(best) = &self.best else { return false };
-        if self.is_exact {
+        if self.is_exact() {
             return are_near(position, &best.fix.position, T::from_f64(SAME));
         }
         let near = T::from_f64(ROUGHLY_SAME);
@@ -144,6 +164,7 @@ impl<T: Scalar, const D: usize> Search<T, D> {
         // A value on a rail of fixed point could not be stored.
         fix.cost = fix.cost.min(T::MAX - T::EPSILON);
         let inside = is_inside(solver, &fix.position);
+        let (is_exact, is_near_start) = (self.is_exact(), self.aim == Aim::BestNear);
         let Some(best) = &mut self.best else {
             self.best = Some(Found { inside, fix });
             return;
@@ -154,14 +175,15 @@ impl<T: Scalar, const D: usize> Search<T, D> {
             }
             return;
         }
-        if self.is_exact && are_near(&fix.position, &best.fix.position, T::from_f64(SAME)) {
+        if is_exact && are_near(&fix.position, &best.fix.position, T::from_f64(SAME)) {
             return;
         }
         let apart = !are_near(&fix.position, &best.fix.position, T::HALF);
         // Four is two standard deviations.
         let alike = (fix.cost - best.fix.cost).abs() < T::TWO + T::TWO;
         let ambiguous = fix.ambiguous || best.fix.ambiguous || (apart && alike);
-        if fix.cost < best.fix.cost {
+        let is_kept = apart && alike && is_near_start;
+        if fix.cost < best.fix.cost && !is_kept {
             best.fix = fix;
         }
         best.fix.ambiguous = ambiguous;
@@ -169,8 +191,8 @@ impl<T: Scalar, const D: usize> Search<T, D> {
 }
 
 impl<T: Scalar, const D: usize> Found<T, D> {
-    /// Whether no other start can do better: the residuals are consistent with the noise, and there are enough
-    /// ranges to exclude a mirror image.
+    /// Whether another start would hardly do better: the residuals are consistent with the noise, and there are enough
+    /// ranges to exclude a mirror image, unless the anchors are nearly collinear.
     fn is_good_enough(&self, observations: usize) -> bool {
         let most = T::from_micro(observations.min(2000) as i32 * 1_000_000);
         self.inside && observations > D + 1 && self.fix.cost <= most

@@ -29,6 +29,8 @@ pub struct DifferenceTracker<T: Scalar, const D: usize, const N: usize, const A:
     tracker: Tracker<T, D, N, A>,
     /// The second anchor of the last difference, and whether its arrival was used.
     last: Option<(usize, bool)>,
+    /// When the clock began, µs: earlier arrivals belong to another one.
+    begun_us: u64,
     /// Mean distance from the anchors' centre to the anchors, at least that of an office, m.
     reach: T,
 }
@@ -60,7 +62,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         tracker.config.common_bias_sigma = reach + reach;
         // Mirror images are only considered with ranges.
         tracker.flat = None;
-        Ok(Self { tracker, last: None, reach })
+        Ok(Self { tracker, last: None, begun_us: 0, reach })
     }
 
     /// Position of the tag, m; `None` before the first one, or when it is lost.
@@ -172,9 +174,9 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         if self.tracker.time_us.saturating_sub(sample.time_us) > LATE_US {
             return Err(Error::OutOfOrder);
         }
-        let again = other.fresh(sample.time_us, 0).is_some()
-            && self.last.is_some_and(|(last, _)| last == second);
-        if again {
+        let is_last = self.last.is_some_and(|(last, _)| last == second);
+        let is_again = is_last && other.fresh(sample.time_us, 0).is_some();
+        if is_again || other.is_heard_at(sample.time_us) {
             return Err(Error::Duplicate);
         }
         Ok(sample.difference - other.anchor.bias + one.anchor.bias)
@@ -187,7 +189,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
             Some((last, true)) if last == first => CHAINED_US,
             // Either this anchor's arrival was late, or the clock has jumped.
             Some((last, false)) if last == first => return None,
-            _ => REMEMBERED_US,
+            _ => REMEMBERED_US.min(sample.time_us.saturating_sub(self.begun_us)),
         };
         let link = self.tracker.links.get(first)?;
         link.fresh(sample.time_us, age_us).map(|(arrival, _)| arrival)
@@ -229,6 +231,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
         let report = self.tracker.measure(&own, range, [true, redundant])?;
         if let (Some(measured), Some(link)) = (begun, self.tracker.links.get_mut(first)) {
             link.hear(sample.time_us, measured);
+            self.begun_us = sample.time_us;
         }
         self.last = Some((second, report.outcome != Outcome::Rejected));
         Ok(report)

@@ -29,6 +29,7 @@ pub use epoch::{EpochMethod, EpochSolver};
 pub use error::Error;
 pub use health::{Health, State};
 pub use height::HeightFinder;
+pub use kestirim_uwb_ranging::Room;
 pub use link::Anchor;
 pub use published::{PublishedConfig, PublishedOutcome, PublishedTracker};
 pub use sample::{DifferenceSample, InertialSample, OdometrySample, Outcome, RangeSample, Report};

@@ -60,6 +60,11 @@ impl<T: Scalar> Link<T> {
         (self.next_us > 0 && age_us <= fresh_us).then_some((self.range, age_us))
     }
 
+    /// Whether the last range arrived at this very time.
+    pub(crate) fn is_heard_at(&self, time_us: u64) -> bool {
+        self.is_heard() && self.next_us == time_us.wrapping_add(1)
+    }
+
     /// The last range, without its bias, m; zero before the first one.
     #[inline]
     pub(crate) fn last(&self) -> T {

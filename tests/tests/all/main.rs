@@ -29,6 +29,7 @@ mod pedestrian_slow;
 mod pedestrian_table;
 mod ppp_on_target;
 mod python;
+mod robot_few_ranges;
 mod robot_on_target;
 mod robot_recordings;
 mod robot_robust;

@@ -187,6 +187,26 @@ fn a_wall_tells_a_place_from_its_mirror_image() {
 }
 
 #[test]
+fn both_sides_of_a_line_of_anchors_are_looked_at() {
+    let line = [0.0, 2.0, 4.0, 6.0, 8.0].map(|x| [x, 0.0, 1.0]);
+    let ranges = line.map(|place| distance(place, [3.0, 2.0, 1.0]));
+    let solver = Solver::new(1.0_f32);
+    assert!(solver.solve::<2>(&observations(line, ranges), None).unwrap().ambiguous);
+    for side in [1.5, -1.5] {
+        let start = Some(Vector2::new(3.5, side));
+        let fix = solver.solve(&observations(line, ranges), start).unwrap();
+        assert!(fix.ambiguous && fix.position.y * side > 0.0, "{fix:?}");
+    }
+    // One anchor out of the line tells its sides apart.
+    let mut bent = line;
+    bent[2][1] = 1.0;
+    let ranges = bent.map(|place| distance(place, [3.0, 2.0, 1.0]));
+    let start = Some(Vector2::new(3.5, -1.5));
+    let fix = solver.solve(&observations(bent, ranges), start).unwrap();
+    assert!(!fix.ambiguous && (fix.position.y - 2.0).abs() < 0.1, "{fix:?}");
+}
+
+#[test]
 fn one_wall_in_the_way_is_outvoted() {
     let at = [[0.0, 0.0, 1.0], [8.0, 0.0, 1.0], [8.0, 8.0, 1.0], [0.0, 8.0, 1.0], [4.0, 9.0, 1.0]];
     let tag = [3.0, 5.0, 1.0];

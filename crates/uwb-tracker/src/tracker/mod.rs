@@ -84,6 +84,8 @@ const LARGEST_ACCELERATION: f64 = 500.0;
 impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N, A> {
     /// Interval at which the estimate follows the IMU between ranges, µs.
     const INERTIAL_STEP_US: u64 = 100_000;
+    /// Longest interval over which an acceleration is taken to last, µs: in a gap of the IMU it does not.
+    const LONGEST_PUSH_US: u64 = 250_000;
 
     /// Creates a tracker for these anchors, before its first position.
     ///
@@ -224,7 +226,8 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
         if sample.push.is_some() || elapsed >= Self::INERTIAL_STEP_US {
             let before = (self.timed(), self.stillness);
             self.stillness = stillness;
-            let advanced = self.advance(sample.time_us, sample.push);
+            let push = sample.push.filter(|_| elapsed <= Self::LONGEST_PUSH_US);
+            let advanced = self.advance(sample.time_us, push);
             if advanced.is_err() {
                 self.restore(before.0);
                 self.stillness = before.1;

@@ -47,9 +47,18 @@ pub struct WheelTracker<T: Scalar, const A: usize> {
     /// Size of the anchors' area relative to an office.
     size: T,
     counters: Counters<T>,
+    /// Average NIS of about the last five ranges, of which those that are too long count as one at most.
+    too_short: T,
     start: Start<T, 2, A>,
 }
 
+/// Average of `too_short` above which both courses must be wrong, and the estimate begins anew. With few ranges, a course may lead
+/// off while its heading is not known, and far from the tag ranges are too long as well as too short; an obstacle only
+/// lengthens them.
+const TOO_SHORT: f64 = 4.0;
+/// Weight of a range in it, and the largest NIS that counts: one range that is wrong is not enough.
+const SHARE_OF_ONE: f64 = 0.2;
+const MOST_OF_ONE: f64 = 16.0;
 /// Mean NIS of ranges above which the wheels are assumed to slip, or not to be this robot's; below it, their noise
 /// grows with it.
 const NIS_OF_SLIP: f64 = 4.0;
@@ -81,6 +90,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
             pace: Pace::new(anchors.len()),
             size,
             counters: Counters::new(),
+            too_short: T::ONE,
             start: Start::new(),
         })
     }
@@ -270,6 +280,11 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         } else if self.counters.reject(self.heard.max(2), learning.is_blocked) {
             self.courses = [None; 2];
         }
+        let most = if seen.innovation > T::ZERO { T::ONE } else { T::from_f64(MOST_OF_ONE) };
+        self.too_short += (seen.nis.min(most) - self.too_short) * T::from_f64(SHARE_OF_ONE);
+        if self.too_short > T::from_f64(TOO_SHORT) {
+            self.courses = [None; 2];
+        }
         Ok(Report { outcome, innovation: Some(seen) })
     }
 
@@ -305,6 +320,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         }
         self.heard = heard;
         self.counters.begun();
+        self.too_short = T::ONE;
         true
     }
 }

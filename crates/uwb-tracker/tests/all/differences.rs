@@ -126,6 +126,40 @@ fn too_few_anchors_make_no_position() {
 }
 
 #[test]
+fn arrivals_before_a_new_clock_belong_to_none() {
+    let mut tracker = listener::<f64>(0.0);
+    let mut take = |time_us, anchors: [usize; 2]| {
+        let [one, other] = anchors.map(|anchor| distance(anchor, [3.0, 2.0]));
+        // The clocks differ by more with each message.
+        let sample = DifferenceSample { time_us, anchors, difference: other - one + 0.005 };
+        tracker.difference(&sample).unwrap().outcome
+    };
+    for k in 0..1000 {
+        take(k as u64 * 10_000, pairs("ring", k));
+    }
+    // Anchor 4 was the last, and is 5 m late by the first clock; the next difference begins with another one.
+    for (time_us, anchors) in [(9_995_000, [1, 2]), (10_000_000, [4, 3]), (10_005_000, [3, 5])] {
+        assert_ne!(take(time_us, anchors), Outcome::Rejected, "{anchors:?}");
+    }
+}
+
+#[test]
+fn a_repeated_batch_counts_once() {
+    let mut tracker = listener::<f64>(0.0);
+    let batch = [1, 2, 3].map(|other| DifferenceSample {
+        time_us: 1_000_000,
+        anchors: [0, other],
+        difference: distance(other, [3.0, 2.0]) - distance(0, [3.0, 2.0]),
+    });
+    for sample in &batch {
+        tracker.difference(sample).unwrap();
+    }
+    for sample in &batch {
+        assert_eq!(tracker.difference(sample), Err(Error::Duplicate));
+    }
+}
+
+#[test]
 fn what_cannot_be_is_refused() {
     let mut tracker = listener::<f64>(0.0);
     let sample = |time_us, anchors, difference| DifferenceSample { time_us, anchors, difference };

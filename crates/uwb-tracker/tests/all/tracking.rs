@@ -280,6 +280,22 @@ fn an_imu_at_rest_holds_the_position() {
 }
 
 #[test]
+fn an_acceleration_does_not_last_over_a_gap() {
+    let pushed = |after_us: u64| {
+        let mut bench = Bench::<f64, 4>::new(Config::calibrated(1.0));
+        for _ in 0..50 {
+            bench.epoch(TAG, [0.0; 4]);
+        }
+        let (time_us, acceleration) = (bench.time_us + after_us, Vector3::new(5.0, 0.0, 9.8));
+        let sample = InertialSample { time_us, acceleration, push: Some([5.0, 0.0]) };
+        bench.tracker.inertial(&sample).unwrap();
+        bench.tracker.velocity().unwrap()[0]
+    };
+    let (at_once, late) = (pushed(100_000), pushed(1_000_000));
+    assert!(at_once > 0.3 && late.abs() < 0.05, "{at_once} {late} m/s");
+}
+
+#[test]
 fn a_smooth_ride_is_not_taken_for_standing() {
     // A trolley at 1 m/s that does not shake at all.
     let mut bench = Bench::<f32, 4>::new(Config::calibrated(1.0));
