@@ -124,6 +124,11 @@ impl<T: Scalar> Alignment<T> {
         (self.gravity - T::ONE).hypot(self.gravity_variance.sqrt())
     }
 
+    /// Whether the gyro bias is known: from a standstill, or by the class of the sensor.
+    pub(crate) fn knows_bias(&self) -> bool {
+        self.bias_variance < T::from_f64(Self::UNKNOWN * Self::UNKNOWN)
+    }
+
     /// Keeps what was learnt and forgets the stream, to restart it.
     pub(crate) fn rewound(mut self) -> Self {
         self.block = Block::new();
@@ -190,8 +195,7 @@ impl<T: Scalar> Alignment<T> {
 
         self.bias_variance += T::from_f64(Self::WANDER * Self::WANDER);
         // With a well-known zero a sway is weighted correctly; with an unknown one it would become the zero.
-        let knows = self.bias_variance < T::from_f64(Self::UNKNOWN * Self::UNKNOWN);
-        if knows || !sways(&rate, spread) {
+        if self.knows_bias() || !sways(&rate, spread) {
             let floor = T::from_f64(Self::RATE_FLOOR * Self::RATE_FLOOR);
             let gain = self.bias_variance / (self.bias_variance + spread + floor);
             self.gyro_bias += (rate - self.gyro_bias) * gain;

@@ -134,7 +134,7 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
             self.health.large_rate(&sample.angular_rate);
         }
         if let Some(gravity) = self.alignment.update(sample) {
-            self.health.standstill(gravity, self.config.sensor);
+            self.health.standstill(gravity, self.alignment.knows_bias(), self.config.sensor);
         }
         if self.navigator.is_none() && verdict.stance {
             self.navigator = Orientation::from_specific_force(&sample.specific_force)

@@ -160,9 +160,10 @@ impl<T: Scalar> Health<T> {
         self.warnings.gaps = true;
     }
 
-    /// Processes the gravity that a standstill showed (in units of standard gravity).
-    pub(crate) fn standstill(&mut self, gravity: T, sensor: SensorClass) {
-        self.warnings.never_still = false;
+    /// Processes the gravity that a standstill showed (in units of standard gravity), and whether the gyro bias is known after
+    /// it: a person who sways shows none.
+    pub(crate) fn standstill(&mut self, gravity: T, knows_bias: bool, sensor: SensorClass) {
+        self.warnings.never_still &= !knows_bias;
         // The zero of a bare chip is off by up to 80 mg per axis.
         let tolerance = match sensor {
             SensorClass::Industrial => 0.05,

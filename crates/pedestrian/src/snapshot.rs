@@ -8,14 +8,14 @@ use kestirim_snapshot::{Layout, Name, layout};
 layout! {
     [T: Scalar] for Ekf<T> as "pedestrian/ekf", 1, T, [];
     [T: Scalar] for Lite<T> as "pedestrian/lite", 1, T, [];
-    [T: Scalar] for Adaptive<T> as "stance/adaptive", 2, T, [];
+    [T: Scalar] for Adaptive<T> as "stance/adaptive", 3, T, [];
     [T: Scalar] for FixedShoe<T> as "stance/shoe", 1, T, [];
     [T: Scalar] for Magnitude<T> as "stance/magnitude", 1, T, [];
     [T: Scalar] for MovingVariance<T> as "stance/variance", 1, T, [];
     [T: Scalar] for AngularRateEnergy<T> as "stance/rate", 1, T, [];
     // The layout of a tracker includes those of its navigator and its detector.
     [T: Scalar, N: Layout, D: Layout] for Tracker<T, N, D>
-        as N::NAME, 5, T, [N::VERSION, Name::new(D::NAME).code(), D::VERSION];
+        as N::NAME, 6, T, [N::VERSION, Name::new(D::NAME).code(), D::VERSION];
     [T: Scalar] for PathUncertainty<T> as "pedestrian/path", 3, T, [];
     [T: Scalar] for MagneticHeading<T> as "pedestrian/north", 1, T, [];
 }

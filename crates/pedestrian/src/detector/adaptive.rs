@@ -5,7 +5,8 @@ use kestirim_scalar::Scalar;
 ///
 /// Every stride has a stance, so the smallest T of the last 1.4 s belongs to one, for any walker: the foot stands where
 /// T < max(T₀, 2·min T), with a smaller T₀ for slow walkers. If no stance is found for a while, the walker has begun to
-/// run or the minimum was that of a standstill, and the bound grows with the time since.
+/// run or the minimum was that of a standstill, and the bound grows with the time since. For the first 1.4 s, and after a gap as
+/// long, only T₀ counts: the smallest T so far may be in a swing.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -55,7 +56,10 @@ impl<T: Scalar> StanceDetector<T> for Adaptive<T> {
         let since = motion.time_us.wrapping_sub(last_us);
         self.swing.push(motion.time_us, statistic);
         let floor = self.swing.share() * T::from_f64(Self::FLOOR);
-        let mut bound = (minimum * T::from_f64(Self::FACTOR)).max(floor);
+        let mut bound = floor;
+        if self.minimum.is_full() {
+            bound = bound.max(minimum * T::from_f64(Self::FACTOR));
+        }
         if since > Self::PATIENCE_US {
             let waited = (since - Self::PATIENCE_US).min(Self::IMPATIENCE_US);
             bound += bound * T::from_micro(3 * waited as i32);
@@ -89,6 +93,8 @@ pub(crate) struct RecentMinimum<T> {
         serde(deserialize_with = "kestirim_snapshot::arrays::count::<_, { CAPACITY - 1 }>")
     )]
     memory: usize,
+    /// Bins since the first value, or since a gap of longer than all bins; at most `memory`.
+    passed: usize,
 }
 
 impl<T> RecentMinimum<T> {
@@ -105,6 +111,7 @@ impl<T: Scalar> RecentMinimum<T> {
             begun_us: None,
             older: T::MAX,
             memory: memory.min(CAPACITY - 1),
+            passed: 0,
         }
     }
 
@@ -126,6 +133,12 @@ impl<T: Scalar> RecentMinimum<T> {
         self.bins[self.newest % CAPACITY].min(self.older)
     }
 
+    /// Whether it has lasted for all of its bins.
+    #[inline]
+    pub(crate) fn is_full(&self) -> bool {
+        self.passed >= self.memory
+    }
+
     /// Begins the bin that contains `time_us`; skipped bins stay empty.
     #[inline(never)]
     fn next_bin(&mut self, mut begun_us: u32, time_us: u32) {
@@ -133,13 +146,17 @@ impl<T: Scalar> RecentMinimum<T> {
         for _ in 0..CAPACITY {
             self.newest = (self.newest + 1) % CAPACITY;
             self.bins[self.newest] = T::MAX;
+            self.passed = (self.passed + 1).min(self.memory);
             begun_us = begun_us.wrapping_add(Self::BIN_US);
             if time_us.wrapping_sub(begun_us) < Self::BIN_US {
                 break;
             }
         }
         let inside = time_us.wrapping_sub(begun_us) < Self::BIN_US;
-        self.begun_us = Some(if inside { begun_us } else { time_us });
+        if !inside {
+            (begun_us, self.passed) = (time_us, 0);
+        }
+        self.begun_us = Some(begun_us);
         self.older = (1..=self.memory).fold(T::MAX, |smallest, age| {
             smallest.min(self.bins[self.newest.wrapping_sub(age) % CAPACITY])
         });
@@ -183,10 +200,23 @@ mod tests {
         // A long gap empties all bins, and the next bin begins at its end.
         let mut minimum = RecentMinimum::new(15);
         minimum.push(0, 1.0);
+        minimum.push(15 * BIN_US, 1.0);
+        assert!(minimum.is_full());
         assert_eq!(minimum.push(3_600_000_000, 5.0), 5.0);
+        assert!(!minimum.is_full());
         assert_eq!(minimum.push(3_600_000_000 + BIN_US - 1, 4.0), 4.0);
         assert_eq!(minimum.push(3_600_000_000 + 16 * BIN_US - 1, 9.0), 4.0);
         assert_eq!(minimum.push(3_600_000_000 + 16 * BIN_US, 9.0), 9.0);
+    }
+
+    #[test]
+    fn a_foot_seen_first_in_its_swing_does_not_stand() {
+        let mut detector = Adaptive::default();
+        // It slows down to 1 rad/s, and swings again.
+        for k in 0..60 {
+            let rate = 1.0 + 0.1 * (k as f64 - 30.0).abs();
+            assert!(!turning(&mut detector, k * 10_000, rate), "{k}");
+        }
     }
 
     /// Processes a foot that turns at this rate (rad/s) at a time (µs).
@@ -209,6 +239,7 @@ mod tests {
                 detector.last_stance_us = Some(190_000);
                 let time_us = 190_000 + (waited * 1e6) as u32;
                 detector.minimum = RecentMinimum::new(Adaptive::<f64>::MEMORY_BINS);
+                detector.minimum.passed = Adaptive::<f64>::MEMORY_BINS;
                 detector.minimum.push(time_us, 0.5);
                 // Then it turns faster: twice the smallest is the bound.
                 let rate = (grown * share).sqrt();

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 fn found(change: impl FnOnce(&mut Health<f64>)) -> Warnings {
     let mut health = Health::new();
     // All tests below are about streams that stood once.
-    health.standstill(1.0, SensorClass::Industrial);
+    health.standstill(1.0, true, SensorClass::Industrial);
     assert_eq!(health.warnings(), Warnings::default());
     change(&mut health);
     health.warnings()
@@ -96,7 +96,7 @@ fn gravity_at_rest_is_that_of_the_earth() {
         (1.119, SensorClass::Consumer, false),
         (0.879, SensorClass::Consumer, true),
     ] {
-        let warnings = found(|health| health.standstill(gravity, sensor));
+        let warnings = found(|health| health.standstill(gravity, true, sensor));
         assert_eq!(warnings.gravity_implausible, implausible, "{gravity} {sensor:?}");
     }
 }
