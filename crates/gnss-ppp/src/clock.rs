@@ -10,7 +10,7 @@ pub struct ClockSample {
     /// Seconds since the clock's reference instant.
     pub second: f64,
     /// Satellite clock minus GPS time, s, without the relativistic effect of the orbit's eccentricity, as in products
-    /// of the IGS.
+    /// of the IGS. NaN where the clock jumps: it is unknown between the neighbours of this sample.
     pub bias: f64,
 }
 
@@ -43,11 +43,12 @@ impl Clock<'_> {
     pub fn at(&self, time: GpsTime) -> Option<ClockState> {
         let second = time.since(self.reference);
         let after = self.samples.partition_point(|sample| sample.second <= second);
-        let before = self.samples.get(after.checked_sub(1)?)?;
+        let known = |place| self.samples.get(place).filter(|it: &&ClockSample| !it.bias.is_nan());
+        let before = known(after.checked_sub(1)?)?;
         if before.second == second {
             return Some(ClockState { bias: before.bias, interval: 0.0, distance: 0.0 });
         }
-        let next = self.samples.get(after)?;
+        let next = known(after)?;
         let interval = next.second - before.second;
         if interval > self.longest_gap || interval.is_nan() {
             return None;
@@ -69,14 +70,15 @@ mod tests {
     #[test]
     fn between_samples_and_not_beyond() {
         let reference = GpsTime::new(59_025, 0.0);
-        let samples = [(0.0, 1.0), (30.0, 2.0), (900.0, 3.0)]
+        let samples = [(0.0, 1.0), (30.0, 2.0), (900.0, 3.0), (920.0, f64::NAN), (921.0, 7.0)]
             .map(|(second, bias)| ClockSample { second, bias });
         let clock = Clock { reference, samples: &samples, longest_gap: 300.0 };
         let at = |second| clock.at(reference.plus(second));
         assert_eq!(at(12.0), Some(ClockState { bias: 1.4, interval: 30.0, distance: 12.0 }));
         assert_eq!(at(900.0).map(|state| state.bias), Some(3.0));
         assert_eq!(at(30.0).map(|state| state.interval), Some(0.0));
-        for missing in [-1.0, 31.0, 901.0, f64::NAN] {
+        assert_eq!(at(921.0).map(|state| state.bias), Some(7.0));
+        for missing in [-1.0, 31.0, 901.0, 920.0, 920.5, 922.0, f64::NAN] {
             assert_eq!(at(missing), None);
         }
     }

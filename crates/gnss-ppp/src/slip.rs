@@ -183,6 +183,11 @@ impl Arc {
         self.carriers.wide_lane() * (self.carriers.melbourne_wuebbena(phase, code) - self.wide_lane)
     }
 
+    /// The carriers on which the satellite is observed: on others an arc of its own begins.
+    pub const fn carriers(&self) -> Carriers {
+        self.carriers
+    }
+
     /// The time of the last observation of the satellite.
     pub const fn last(&self) -> GpsTime {
         self.last

@@ -76,13 +76,16 @@ pub(crate) fn gnss<'py>(
             let mut followed = run(Order::Forwards);
             // Before smoothing: the observations' warnings refer to one direction of time.
             let doubts = recording.doubts().and(followed.doubts());
-            let warnings = recording.warnings(Corrections::ALL).chain(followed.warnings());
-            let warnings = warnings.collect();
+            let mut warnings = recording.warnings_of(Corrections::ALL, epochs, &followed);
+            warnings.extend(followed.warnings());
             if smooth {
                 followed = followed.smoothed(&run(Order::Backwards));
+                warnings.extend(followed.disagreement(motion));
             }
             if followed.fixes.is_empty() {
-                let sentence = format!("none of {} epochs has a solution", epochs.len());
+                let why = warnings.iter().map(|warning| format!("; {warning}"));
+                let (count, why): (_, String) = (epochs.len(), why.collect());
+                let sentence = format!("none of {count} epochs has a solution{why}");
                 return Err(KestirimError::new_err(sentence));
             }
             Ok(Found { followed, warnings, doubts })

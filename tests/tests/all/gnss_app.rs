@@ -10,8 +10,9 @@ use std::path::Path;
 
 use embedded_io::{ErrorType, Read, ReadReady, Write};
 use gnss_app::{App, Broadcasts, Corrections, Source, Unusable, site};
-use kestirim_gnss_files::{Ephemeris, Message, Navigation, Observations, Text};
-use kestirim_gnss_ppp::{Carriers, Geodetic};
+use kestirim_gnss_files::{Ephemeris, Epoch, Message, Navigation, Observations, Text};
+use kestirim_gnss_ppp::{Carriers, Geodetic, Slip};
+use kestirim_ppp_filter::Slipped;
 use kestirim_replay::gnss::ephemeris;
 use kestirim_tests::gnss::ESBC;
 use kestirim_tests::recordings::folder_of;
@@ -189,6 +190,39 @@ fn a_receiver_alone_finds_its_place() {
     // The first epoch comes before any ephemeris.
     let [last, sigma, most] = run(&receiver, Broadcasts::default(), unhealthy, 1);
     assert!(last < 1.0 && sigma < 5.0 && most < 1.0);
+}
+
+/// A satellite whose first phase was lost while its second was missing has slipped, also if the receiver has tracked it since the
+/// last solution of the others.
+#[test]
+fn a_lock_is_counted_from_the_satellites_own_last_epoch() {
+    const ABSENT: std::ops::Range<usize> = 120..124;
+    let Some(folder) = folder_of("gnss") else { return };
+    let navigation = Text::unpack("day.nav", fitted_to_products(&folder).into_bytes())
+        .and_then(|text| Navigation::parse(&[text]))
+        .expect("ephemerides");
+    let mut observations =
+        Observations::read(folder.join(ESBC.observations)).expect("observations");
+    let epochs = &mut observations.epochs;
+    let seen = |epoch: &Epoch, prn: u8| epoch.satellites.iter().any(|it| it.prn == prn);
+    let stays = |prn: &u8| epochs[..=ABSENT.end].iter().all(|epoch| seen(epoch, *prn));
+    let victim = (1..=32).find(stays).expect("a satellite that stays");
+    for (index, epoch) in epochs[ABSENT].iter_mut().enumerate() {
+        let observed = epoch.satellites.iter_mut().find(|it| it.prn == victim);
+        let observed = observed.expect("the satellite");
+        observed.code[1] = None;
+        observed.loss_of_lock[0] = index == 2;
+    }
+    let receiver = stream(&observations, &navigation, 0);
+    let mut app = App::new(&*receiver, Broadcasts::default(), Sink);
+    for index in 0..=ABSENT.end {
+        let epoch = app.poll(0).expect("no port fails").expect("an epoch");
+        if index == ABSENT.end {
+            let told = epoch.solution.expect("a position").satellites;
+            let report = told.iter().find(|it| it.satellite == victim).expect("the satellite");
+            assert_eq!(report.slipped, Some(Slipped::Seen(Slip::LossOfLock)));
+        }
+    }
 }
 
 /// A modem that delivers the frames of an epoch each time that it is asked.

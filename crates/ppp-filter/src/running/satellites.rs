@@ -72,15 +72,18 @@ impl<const N: usize> Running<N> {
         expected: &Expected,
         config: &Config<impl Sized>,
     ) -> Option<Slipped> {
-        let SatelliteObservation { satellite, code, lock_lost, .. } = *observation;
+        let SatelliteObservation { satellite, carriers, code, lock_lost, .. } = *observation;
         let phase = self.repaired(observation);
         let clock = matches!(self.jump, Some(ClockJump::Other)).then_some(Slip::Clock);
         let time = self.time;
         let place = self.channels.get_mut(state)?;
-        let Some(channel) = place.as_mut().filter(|channel| channel.satellite == satellite) else {
+        let continues = |channel: &&mut Channel| {
+            channel.satellite == satellite && channel.arc.carriers() == carriers
+        };
+        let Some(channel) = place.as_mut().filter(continues) else {
             *place = Some(Channel {
                 satellite,
-                arc: Arc::begin(time, observation.carriers, phase, code),
+                arc: Arc::begin(time, carriers, phase, code),
                 wind_up: expected.wind_up_cycles,
                 monitor: PhaseMonitor::NEW,
             });
@@ -109,6 +112,9 @@ impl<const N: usize> Running<N> {
     ) -> Option<ClockJump> {
         let jumps: Vec<f64, N> = collected(observations.iter().filter_map(|observation| {
             let arc = self.channel(self.find(observation.satellite)?)?.arc;
+            if arc.carriers() != observation.carriers {
+                return None;
+            }
             let jump = arc.jump(self.repaired(observation), observation.code);
             (self.time.since(arc.last()).abs() <= config.slips.gap).then_some(jump)
         }));

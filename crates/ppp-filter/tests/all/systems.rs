@@ -3,7 +3,7 @@
 use crate::filter::{SLOW, error, filter, run};
 use crate::sky::{START, marker};
 use kestirim_gnss_ppp::{Carriers, Constellation, Receiver, Site};
-use kestirim_ppp_filter::{Config, Motion, PppFilter, SatelliteObservation, states};
+use kestirim_ppp_filter::{Config, Motion, PppFilter, SatelliteObservation, Slipped, states};
 use nalgebra::Vector3;
 
 /// Half of the satellites are of Galileo, whose clocks the receiver sees with an offset of 30 m.
@@ -37,6 +37,32 @@ fn galileo_beside_gps() {
             run(&mut filter(motion), 3600.0, |_, observations| as_galileo(observations, true));
         assert!(error(alone.last().unwrap()) < 5e-3, "{}", error(alone.last().unwrap()));
     }
+}
+
+/// A receiver that goes over to another carrier begins the satellite's ambiguity anew, once.
+#[test]
+fn other_carriers_are_one_interruption() {
+    let other = |seconds: f64, observations: &mut Vec<SatelliteObservation<'static>>| {
+        for observation in observations.iter_mut().filter(|it| it.satellite % 3 == 0) {
+            let before = observation.carriers.wavelength();
+            observation.carriers = if seconds < 1800.0 { Carriers::E1E5a } else { Carriers::E1E5b };
+            let after = observation.carriers.wavelength();
+            for carrier in 0..2 {
+                observation.phase[carrier] *= before[carrier] / after[carrier];
+            }
+        }
+    };
+    let solutions = run(&mut filter(Motion::Static), 3600.0, other);
+    for pair in solutions.windows(2) {
+        let was_seen = |number| pair[0].satellites.iter().any(|it| it.satellite == number);
+        let [before, now] = [pair[0].time, pair[1].time].map(|time| time.since(START));
+        let goes_over = before < 1800.0 && now >= 1800.0;
+        for report in pair[1].satellites.iter().filter(|it| was_seen(it.satellite)) {
+            let begins = goes_over && report.satellite % 3 == 0;
+            assert_eq!(report.slipped, begins.then_some(Slipped::New), "{now} s: {report:?}");
+        }
+    }
+    assert!(error(solutions.last().unwrap()) < 5e-3, "{}", error(solutions.last().unwrap()));
 }
 
 /// Changes the observations as if a third of the satellites were of GLONASS and a third of BeiDou, with clock offsets,

@@ -1,10 +1,54 @@
 //! Doubts and warnings about the solution of a recording.
 
+use kestirim_gnss_ppp::Corrections;
 use kestirim_health::{Health, Reason};
-use kestirim_ppp_filter::Contradiction;
+use kestirim_ppp_filter::{Contradiction, Motion};
 
-use super::followed::Followed;
-use super::recording::POOR;
+use super::coverage::names;
+use super::followed::{Followed, Tally};
+use super::model::Epoch;
+use super::recording::{POOR, Recording};
+use crate::metrics::median;
+
+impl Recording {
+    /// The warnings about the files, and about those of these epochs, as they were followed: missing orbits and clocks, and gaps.
+    pub fn warnings_of(
+        &self,
+        corrections: Corrections,
+        epochs: &[Epoch],
+        followed: &Followed,
+    ) -> Vec<String> {
+        let mut warnings: Vec<_> = self.warnings(corrections).collect();
+        let mut lacking = |what: &str, count: fn(&Tally) -> usize| {
+            let some = followed.satellites.iter().filter(|(_, tally)| count(tally) > 0);
+            let total: usize = some.clone().map(|(_, tally)| count(tally)).sum();
+            if total > 0 {
+                let names = names(some.map(|(&prn, _)| prn));
+                let plural = if total == 1 { "" } else { "s" };
+                warnings.push(format!("{total} observation{plural} without {what}: {names}"));
+            }
+        };
+        lacking("an orbit", |tally| tally.no_orbit);
+        lacking("a clock", |tally| tally.no_clock);
+        warnings.extend(gaps(self, epochs));
+        warnings
+    }
+}
+
+/// A warning about missing epochs.
+fn gaps(recording: &Recording, epochs: &[Epoch]) -> Option<String> {
+    let steps: Vec<f64> = epochs.windows(2).map(|pair| pair[1].time.since(pair[0].time)).collect();
+    let rounded = |seconds: f64| (1e3 * seconds).round() / 1e3;
+    let usual = rounded(median(&steps));
+    let long = || steps.iter().enumerate().filter(|(_, step)| **step > 1.5 * usual);
+    let (first, _) = long().next()?;
+    let longest = rounded(long().map(|(_, step)| *step).fold(0.0, f64::max));
+    let at = rounded(recording.seconds(&epochs[first]));
+    let (count, plural) = (long().count(), if long().count() == 1 { "" } else { "s" });
+    Some(format!(
+        "{count} gap{plural} between epochs every {usual} s: the first after {at} s, the longest of {longest} s"
+    ))
+}
 
 impl Followed {
     /// The doubts about the whole solution, whatever its epochs say of themselves: many epochs without a solution.
@@ -20,6 +64,18 @@ impl Followed {
         let phases = phases_of_no_use(self);
         let told = contradicted(self).into_iter().chain(phases).chain(clock_jumps(self));
         self.outages.warnings().chain(told).collect()
+    }
+
+    /// A warning about epochs of a smoothed track in which the two directions disagree.
+    pub fn disagreement(&self, motion: Motion) -> Option<String> {
+        let (first, count, of) = (self.apart.first()?, self.apart.len(), self.fixes.len());
+        let remedy = match motion {
+            Motion::Static => ": was the receiver moved (--mode kinematic)?",
+            Motion::Kinematic { .. } => "",
+        };
+        Some(format!(
+            "in {count} of {of} smoothed epochs from {first} s on what came before and what came after disagree about the place{remedy}"
+        ))
     }
 }
 

@@ -15,6 +15,8 @@ use super::whole_biases::WholeBiases;
 
 /// The longest gap between clock samples that is interpolated, s: the interval of the coarsest products.
 const LONGEST_CLOCK_GAP: f64 = 900.0;
+/// Time before the first sample after a clock's jump at which the clock counts as unknown, s.
+const JUST_BEFORE: f64 = 1e-3;
 
 /// Why an observed satellite cannot be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,6 +58,15 @@ pub struct Products {
     broadcast: Option<Broadcast>,
 }
 
+/// The clock of an orbit's sample, after a mark that it has jumped if it has.
+fn clock_of(reference: GpsTime, sample: &files::OrbitSample) -> impl Iterator<Item = ClockSample> {
+    let at = |bias| clock_sample(reference, sample.time, bias);
+    let unknown = at(f64::NAN);
+    let jump = ClockSample { second: unknown.second - JUST_BEFORE, ..unknown };
+    let jump = sample.clock_event.then_some(jump);
+    jump.into_iter().chain(sample.clock.map(at))
+}
+
 impl Products {
     /// Products for observations that begin at `start`. Clocks are from `clocks` if given, otherwise from the orbit
     /// files.
@@ -69,7 +80,7 @@ impl Products {
         let model = antenna_model(orbits, clocks);
         let mut jumps = Vec::new();
         let satellites = (0..=u8::MAX).map(|prn| {
-            // A sample of a manoeuvre or of a jumping clock belongs to neither side.
+            // A sample of a manoeuvre belongs to neither side.
             let samples = orbits.satellite(prn);
             let steady = samples.iter().filter(|sample| !sample.manoeuvre);
             let mut orbit: Vec<_> = steady.map(|sample| orbit_sample(reference, sample)).collect();
@@ -82,11 +93,7 @@ impl Products {
                     .iter()
                     .map(|sample| clock_sample(reference, sample.time, sample.bias))
                     .collect(),
-                None => samples
-                    .iter()
-                    .filter(|sample| !sample.clock_event)
-                    .filter_map(|sample| Some(clock_sample(reference, sample.time, sample.clock?)))
-                    .collect(),
+                None => samples.iter().flat_map(|sample| clock_of(reference, sample)).collect(),
             };
             let antenna = antennas.satellite(prn, start);
             // If that edition's values are not known, another's are better than none.
@@ -244,5 +251,38 @@ impl Products {
             accuracy: 0.0,
         };
         Ok((state, 0.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clock_is_not_interpolated_across_its_jump() {
+        let (reference, day) = (GpsTime::new(58_849, 0.0), 58_849);
+        let sample = |second, clock, clock_event| files::OrbitSample {
+            time: files::GpsTime::new(day, second),
+            position: [2e7, 0.0, 0.0],
+            clock,
+            clock_predicted: false,
+            clock_event,
+            manoeuvre: false,
+        };
+        for clock in [Some(5e-4), None] {
+            let file = [
+                sample(0.0, Some(1e-4), false),
+                sample(300.0, Some(1e-4), false),
+                sample(600.0, clock, true),
+                sample(900.0, Some(5e-4), false),
+            ];
+            let samples: Vec<_> = file.iter().flat_map(|it| clock_of(reference, it)).collect();
+            let clock = Clock { reference, samples: &samples, longest_gap: LONGEST_CLOCK_GAP };
+            let at = |second| Some(clock.at(reference.plus(second))?.bias);
+            assert_eq!((at(150.0), at(300.0)), (Some(1e-4), Some(1e-4)));
+            assert_eq!((at(450.0), at(599.0)), (None, None));
+            let jumped = file[2].clock;
+            assert_eq!((at(600.0), at(750.0), at(900.0)), (jumped, jumped, Some(5e-4)));
+        }
     }
 }

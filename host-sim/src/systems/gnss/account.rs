@@ -34,8 +34,9 @@ pub(super) fn account(
     track: &Track,
 ) -> Result<Account, Error> {
     // Warnings about the recording are the same for all filters.
-    let mut warnings = warning::of_recording(recording, setup, track.main());
-    warnings.extend(track.smoothed.iter().find_map(|it| warning::apart(it, setup.motion)));
+    let epochs = recording.epochs(setup.until);
+    let mut warnings = recording.warnings_of(setup.corrections, epochs, track.main());
+    warnings.extend(track.smoothed.iter().find_map(|it| it.disagreement(setup.motion)));
     let of = |(filter, followed): &(FilterKind, Followed), first: &[String]| {
         let smoothed = track.smoothed.as_ref().filter(|_| *filter == setup.main());
         let warnings = [first, &followed.warnings()].concat();

@@ -3,10 +3,12 @@
 use embedded_io::{Read, ReadReady, Write};
 use heapless::Vec;
 use kestirim_gnss_ppp::GpsTime;
-use kestirim_ppp_filter::{Lean, PppFilter, SatelliteObservation, Solution, states};
+use kestirim_ppp_filter::{
+    Health as Doubts, Lean, PppFilter, SatelliteObservation, Solution, states,
+};
 use kestirim_telemetry::{GlobalPosition, Health, Transmitter};
 
-use crate::observations::{Message, Observations, Observed, Receiver};
+use crate::observations::{Message, Observations, Observed, Receiver, SATELLITES};
 use crate::source::{Source, Unusable, sighting};
 use crate::{Error, site};
 
@@ -42,7 +44,8 @@ pub struct App<R, S, W> {
     telemetry: Transmitter<W>,
     filter: PppFilter<STATES, Lean>,
     observed: Option<GpsTime>,
-    solved: Option<GpsTime>,
+    /// When each satellite, by its number, was last part of a solution.
+    solved: [Option<GpsTime>; SATELLITES + 1],
     accepted: u32,
     rejected: u32,
 }
@@ -62,7 +65,7 @@ where
             telemetry: Transmitter::new(telemetry),
             filter: PppFilter::new(S::config()),
             observed: None,
-            solved: None,
+            solved: [None; SATELLITES + 1],
             accepted: 0,
             rejected: 0,
         }
@@ -93,7 +96,9 @@ where
             let position = GlobalPosition {
                 time_us,
                 position: solution.position.into(),
-                sigma: Some(libm::sqrt(solution.covariance.trace() / 3.0) as f32),
+                // One that the observations contradict has no meaning, nor has that of a position which nothing checks.
+                sigma: is_checked(solution.health)
+                    .then(|| libm::sqrt(solution.covariance.trace() / 3.0) as f32),
             };
             self.telemetry.send(position).map_err(|_| Error::Telemetry)?;
         }
@@ -117,19 +122,26 @@ where
             }
         }
         let solution = self.filter.process(time, &site::receiver(), &sightings);
-        match solution {
-            Ok(_) => {
-                self.solved = Some(time);
-                self.accepted = self.accepted.saturating_add(1);
+        match &solution {
+            Ok(found) => {
+                for sighting in &sightings {
+                    if let Some(place) = self.solved.get_mut(usize::from(sighting.satellite)) {
+                        *place = Some(time);
+                    }
+                }
+                let is_wrong = matches!(found.health, Doubts::Contradicted(_));
+                let count = if is_wrong { &mut self.rejected } else { &mut self.accepted };
+                *count = count.saturating_add(1);
             }
             Err(_) => self.rejected = self.rejected.saturating_add(1),
         }
         Epoch { solution, unused }
     }
 
-    /// Whether a phase has not been tracked since the last epoch with a solution.
+    /// Whether a phase has not been tracked since the satellite was last part of a solution.
     fn lost(&self, time: GpsTime, observed: &Observed) -> bool {
-        let Some(solved) = self.solved else { return false };
+        let solved = self.solved.get(usize::from(observed.satellite)).copied().flatten();
+        let Some(solved) = solved else { return false };
         let elapsed_ms = 1e3 * time.since(solved);
         // The receiver rounds down.
         observed
@@ -137,4 +149,9 @@ where
             .iter()
             .any(|&lock| lock < Observed::LONGEST_LOCK && f64::from(lock) + 1.0 < elapsed_ms)
     }
+}
+
+/// Whether the observations check a solution and agree with it.
+const fn is_checked(health: Doubts) -> bool {
+    matches!(health, Doubts::Converging | Doubts::Converged)
 }

@@ -15,8 +15,8 @@ use crate::calendar;
 
 /// The longest message that is read, bytes: 95 signals. A ZED-F9P observes some 60.
 const LONGEST: usize = 3_072;
-/// The largest number of GPS satellites in an epoch.
-const SATELLITES: usize = 32;
+/// The largest number of GPS satellites in an epoch, and of a GPS satellite.
+pub(crate) const SATELLITES: usize = 32;
 
 /// `gnssId` of GPS.
 const GPS: u8 = 0;
@@ -60,13 +60,12 @@ impl Observations {
                 _ => continue,
             };
             let number = signal.sv_id();
-            let known = satellites.iter().position(|observed| observed.satellite == number);
-            let index = known.unwrap_or_else(|| {
+            if satellites.iter().all(|observed| observed.satellite != number) {
                 // Satellites beyond the capacity are ignored.
                 let _ = satellites.push(Observed { satellite: number, ..Observed::default() });
-                satellites.len().saturating_sub(1)
-            });
-            let Some(observed) = satellites.get_mut(index) else { continue };
+            }
+            let observed = satellites.iter_mut().find(|observed| observed.satellite == number);
+            let Some(observed) = observed else { continue };
             let status = signal.trk_stat();
             let whole = TrkStatFlags::CP_VALID | TrkStatFlags::HALF_CYCLE;
             set(

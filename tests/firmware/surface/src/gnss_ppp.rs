@@ -194,6 +194,7 @@ fn signals() {
     keep(Arc::is_suspicious(&arc));
     keep(Arc::stays_away(&arc));
     keep(Arc::jump(&arc, numbers(), numbers()));
+    keep(Arc::carriers(&arc));
     keep(Arc::last(&arc));
 }
 

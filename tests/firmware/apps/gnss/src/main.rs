@@ -6,7 +6,7 @@
 use board::{CmsdkUart, Tape};
 use cortex_m_rt::entry;
 use gnss_app::{App, Epoch, Error, Products};
-use kestirim_ppp_filter::{SatelliteReport, Slipped};
+use kestirim_ppp_filter::{Health, SatelliteReport, Slipped};
 // The interrupt table, as for all programs of this board; this one handles none.
 use mps2_an386 as _;
 
@@ -40,7 +40,12 @@ fn log(epoch: &Epoch) {
         defmt::warn!("G{=u8} {}", unused.satellite, unused.reason);
     }
     match &epoch.solution {
-        Ok(solution) => solution.satellites.iter().for_each(log_satellite),
+        Ok(solution) => {
+            if matches!(solution.health, Health::Contradicted(_) | Health::Unchecked) {
+                defmt::warn!("{}", solution.health);
+            }
+            solution.satellites.iter().for_each(log_satellite);
+        }
         Err(error) => defmt::warn!("{}", error),
     }
 }
