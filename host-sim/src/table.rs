@@ -165,7 +165,7 @@ fn unit_of_time(
     let mut has_moments = false;
     let times = table.rows().filter_map(|(_, fields)| {
         let field = fields.get(column.at)?;
-        has_moments |= table.moment(field).is_some();
+        has_moments |= table.is_moment(field);
         table.number(field).filter(|time| time.is_finite())
     });
     let unit = if places.iter().any(|(wanted, ..)| wanted == "range") {
@@ -202,6 +202,11 @@ pub struct Column {
 
 impl Column {
     const NONE: Self = Self { at: 0, scale: 1.0, has_unit: false };
+
+    /// Whether the header or an option states the unit.
+    pub const fn has_unit(&self) -> bool {
+        self.has_unit
+    }
 }
 
 /// The header of a table.

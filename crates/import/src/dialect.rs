@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::moment;
 use crate::number;
-use crate::text::Text;
+use crate::text::{Text, without_blanks};
 
 /// The number of lines that are looked at to detect the dialect.
 const SAMPLE: usize = 400;
@@ -108,7 +108,7 @@ impl Dialect {
 
     /// Whether a line is a comment: it begins with `#`, `%`, `//` or `;`.
     pub fn is_comment(self, line: &[u8]) -> bool {
-        match line {
+        match line.trim_ascii_start() {
             [b'#' | b'%', ..] | [b'/', b'/', ..] => true,
             [b';', ..] => self.separator != Separator::Semicolon,
             _ => false,
@@ -131,12 +131,20 @@ impl Dialect {
         byte == one || byte == other
     }
 
+    /// A line without surrounding blanks, which do not separate fields.
+    pub(crate) fn trimmed(self, line: &[u8]) -> &[u8] {
+        match self.separator {
+            Separator::Tab => without_blanks(line),
+            _ => line.trim_ascii(),
+        }
+    }
+
     /// The fields of a line, without surrounding blanks and quotation marks; only the first ones if there are more than
     /// 1000.
     pub fn fields(self, line: &[u8]) -> Vec<Cow<'_, [u8]>> {
         // Most lines have at most eight fields: growing the list would be most of the work.
         let mut fields = Vec::with_capacity(8);
-        let mut rest = line.trim_ascii();
+        let mut rest = self.trimmed(line);
         loop {
             let (field, length) = self.field(rest);
             fields.push(field);

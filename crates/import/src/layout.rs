@@ -60,8 +60,14 @@ impl Layout {
             kinds: kinds(text, dialect, width, first.number),
             other_header: None,
         };
-        // A line of units follows the names; a header may be the last comment.
-        let mut lines = above.iter().rev().map(|line| (line.number, line.bytes));
+        // A line of units follows the names; a header may be the last comment. Between them and the first whole row may be others,
+        // such as those with a note in a column that is mostly empty.
+        let is_data = |bytes: &[u8]| {
+            let (fields, numbers) = dialect.row(bytes);
+            fields > 1 && numbers * 2 >= fields
+        };
+        let lines = above.iter().rev().skip_while(|line| is_data(line.bytes));
+        let mut lines = lines.map(|line| (line.number, line.bytes));
         let mut nearest = lines.next();
         if let (Some(units), Some((number, bytes))) = (
             nearest.and_then(|(_, bytes)| units_line(header_names(dialect, width, bytes, 2)?)),

@@ -20,6 +20,25 @@ impl Moment {
     }
 }
 
+/// Continues times of day after midnight.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Days {
+    /// The last time, s since the midnight before the first one.
+    last: Option<f64>,
+}
+
+impl Days {
+    /// The time of a moment, s since 1970 or since the midnight before the first moment. Of all days, a time of day belongs to that
+    /// on which it is nearest to the time before.
+    pub(crate) fn seconds(&mut self, moment: Moment) -> f64 {
+        const DAY: f64 = 86_400.0;
+        let seconds = moment.microseconds() * 1e-6;
+        let Moment::OfDay(_) = moment else { return seconds };
+        let days = self.last.map_or(0.0, |last| ((last - seconds) / DAY).round());
+        *self.last.insert(seconds + days * DAY)
+    }
+}
+
 /// Reads ISO 8601 (`2024-05-01T10:00:00.25+03:00`, with a blank or slashes too) or a time of day (`10:00:00.25`).
 pub(crate) fn read(field: &[u8]) -> Option<Moment> {
     const LONGEST: usize = 40;

@@ -4,10 +4,11 @@
 //! separator.
 
 use std::borrow::Cow;
+use std::cell::Cell;
 
 use crate::dialect::{Dialect, Separator};
 use crate::heading::Heading;
-use crate::moment;
+use crate::moment::{self, Days};
 use crate::options::Options;
 use crate::text::{Text, letters};
 
@@ -24,6 +25,7 @@ pub struct NamedTable<'a> {
     pub heading: Heading<'a>,
     /// The dialect of the table.
     pub dialect: Dialect,
+    days: Cell<Days>,
 }
 
 impl<'a> NamedTable<'a> {
@@ -50,7 +52,7 @@ impl<'a> NamedTable<'a> {
                 match columns(&heading) {
                     Ok(found) => {
                         let dialect = Dialect::new(separator, false);
-                        let table = Self { text, heading, dialect };
+                        let table = Self { text, heading, dialect, days: Cell::default() };
                         let fits = table.fitting_rows();
                         if best.as_ref().is_none_or(|(most, ..)| fits > *most) {
                             best = Some((fits, table, found));
@@ -119,9 +121,19 @@ impl<'a> NamedTable<'a> {
         self.dialect.number(field)
     }
 
-    /// The date with a time, or time of day, in a field, in s since 1970 or since midnight.
+    /// Whether a field holds a date with a time, or a time of day.
+    pub fn is_moment(&self, field: &[u8]) -> bool {
+        moment::read(field).is_some()
+    }
+
+    /// The date with a time, or time of day, in a field, in s since 1970 or since the midnight before the first one: to be called
+    /// for one row after the other.
     pub fn moment(&self, field: &[u8]) -> Option<f64> {
-        moment::read(field).map(|moment| moment.microseconds() * 1e-6)
+        let moment = moment::read(field)?;
+        let mut days = self.days.get();
+        let seconds = days.seconds(moment);
+        self.days.set(days);
+        Some(seconds)
     }
 }
 

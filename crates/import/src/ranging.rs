@@ -10,12 +10,16 @@
 //! | differences of distances | `t,anchor_a,anchor_b,difference`; Crazyflie's client: `Timestamp,tdoa2.d7-0,tdoa2.d0-1,…` |
 //! | one column per anchor | `t,d0,d1,…`, `time_ms,range_A1 [cm],…`; the log of Crazyflie's client: `Timestamp,ranging.distance0,…` |
 //!
+//! A log of several tags is refused unless an option names one (`topic`): by `T` in `aT:A` of a TREK1000, by `tid`, or by a column
+//! `tag`.
+//!
 //! A line may begin with a time: a number, a date, or a time of day (`12:00:00.250 -> AT+RANGE=…`). A range of zero
 //! means none.
 
 mod labels;
 mod lines;
 mod tables;
+mod tags;
 mod topics;
 mod wide;
 
@@ -25,6 +29,7 @@ use crate::options::Options;
 use crate::text::Text;
 
 pub use self::labels::Labels;
+pub use self::tags::Tags;
 
 /// The usual time between two ranging epochs of a tag lies in this interval, s.
 const USUAL_STEP: std::ops::RangeInclusive<f64> = 2e-3..=2.0;
@@ -268,6 +273,56 @@ mod tests {
         assert_eq!(read.exchanges[0].stamps[0], (1 << 40) - 1);
         let beyond = hexadecimal.replace("0xF", "0x1F");
         assert!(ranges(&beyond, &["A0"], &plain).unwrap_err().contains("below 2^40"));
+    }
+
+    #[test]
+    fn ranges_of_one_of_several_tags_are_read() {
+        let plain = Options::default();
+        let second = Options { topic: Some("1".to_owned()), ..Options::default() };
+        let trek = "mc 01 00000663 0 0 0 095f c1 00024c24 a0:0\nmc 01 00000578 0 0 0 0960 c2 00024c88 a1:0\n";
+        let makerfabs = "[0.5] AT+RANGE=tid:0,mask:01,seq:1,range:(164,0)\n[0.6] AT+RANGE=tid:1,mask:01,seq:2,range:(140,0)\n";
+        let wide = "t,tag,d0,d1\n0.0,0,1.635,1.443\n0.1,1,1.4,1.2\n";
+        let stamps = "t,tag,anchor,t1,t2,t3,t4,t5,t6\n0,0,A0,1,2,3,4,5,6\n0.1,1,A0,1,2,3,4,5,6\n";
+        for text in [trek, makerfabs, wide, stamps] {
+            let error = ranges(text, &["A0", "A1"], &plain).unwrap_err();
+            assert!(error.contains("of one tag, found those of \"0\", \"1\""), "{error}");
+            let read = ranges(text, &["A0", "A1"], &second).unwrap();
+            assert!(read.ranges.iter().all(|it| it.metres < 1.5), "{text}: {:?}", read.ranges);
+            let count = read.ranges.len() + read.exchanges.len();
+            assert!((1..=2).contains(&count), "{text}: {count}");
+        }
+    }
+
+    #[test]
+    fn a_column_with_an_anchors_name_is_no_range() {
+        let plain = Options::default();
+        let text = "t,anchor0,distance0,anchor1,distance1\n0.0,0,1.635,1,1.443\n0.1,0,1.4,1,1.2\n";
+        assert_read(text, &["A0", "A1"], &plain);
+        let error = ranges("t,d0,d1,r0,r1\n0,1.6,1.4,-80,-81\n", &["A0", "A1"], &plain);
+        let expected =
+            "line 1: expected one column of ranges to anchor \"0\", found \"d0\" and \"r0\"";
+        assert_eq!(error.unwrap_err(), expected);
+    }
+
+    #[test]
+    fn an_empty_last_field_between_tabs_is_a_missing_range() {
+        let plain = Options::default();
+        let text = "t\td0\td1\td2\n0.0\t1.635\t1.443\t\n0.1\t1.4\t1.2\t\n";
+        assert_read(text, &["A0", "A1", "A2"], &plain);
+    }
+
+    #[test]
+    fn the_day_after_midnight_follows() {
+        let lec = "23:59:59.950 DIST,1,AN0,1151,5.00,8.00,2.25,1.64,POS,7.1,8.2,-1.3,97\n\
+                   00:00:00.050 DIST,1,AN0,1151,5.00,8.00,2.25,1.40,POS,7.1,8.2,-1.3,97\n\
+                   00:00:00.000 DIST,1,AN0,1151,5.00,8.00,2.25,1.50,POS,7.1,8.2,-1.3,97\n";
+        let wide = "time,d0,d1\n23:59:59.950,1.64,2\n00:00:00.050,1.40,2\n00:00:00.000,1.5,2\n";
+        for (text, anchors) in [(lec, &["1151"][..]), (wide, &["A0", "A1"])] {
+            let read = ranges(text, anchors, &Options::default()).unwrap();
+            let of_first = read.ranges.iter().filter(|it| it.anchor == 0);
+            let times: Vec<_> = of_first.map(|it| it.time_us).collect();
+            assert_eq!(times, [86_399_950_000, 86_400_050_000, 86_400_000_000], "{text}");
+        }
     }
 
     #[test]

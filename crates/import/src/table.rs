@@ -150,7 +150,7 @@ impl Table {
     /// # Errors
     /// The number of fields, if it differs from the number of columns.
     fn read_row(&self, dialect: Dialect, line: &[u8], values: &mut [f64]) -> Result<(), usize> {
-        let mut row = Row::new(dialect, line);
+        let mut row = Row::new(dialect, dialect.trimmed(line));
         for (column, value) in self.columns.iter().zip(values.iter_mut()) {
             let number = if column.kind == Kind::Number { row.number() } else { None };
             *value = match number {

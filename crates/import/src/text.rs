@@ -41,19 +41,20 @@ impl<'a> Text<'a> {
         Ok(Self { bytes, line_break })
     }
 
-    /// The lines, numbered from 1, without surrounding blanks; blank ones are left out but counted.
+    /// The lines, numbered from 1, without surrounding blanks, but with tabs, between which a field may be empty; blank ones are
+    /// left out but counted.
     pub fn lines(&self) -> impl Iterator<Item = Line<'_>> {
         let mut ends = memchr::memchr_iter(self.line_break, &self.bytes);
         let (mut start, mut number) = (0, 0);
         let all = std::iter::from_fn(move || {
             let rest = self.bytes.get(start..).filter(|rest| !rest.is_empty())?;
             let end = ends.next().unwrap_or(start + rest.len());
-            let bytes = self.bytes[start..end].trim_ascii();
+            let bytes = without_blanks(&self.bytes[start..end]);
             start = end + 1;
             number += 1;
             Some(Line { number, bytes })
         });
-        all.filter(|line| !line.bytes.is_empty())
+        all.filter(|line| !line.bytes.trim_ascii().is_empty())
     }
 
     /// The line of this number, without surrounding blanks; empty beyond the last one.
@@ -84,6 +85,14 @@ pub struct Line<'a> {
     pub number: usize,
     /// The bytes of the line, without surrounding blanks and line break.
     pub bytes: &'a [u8],
+}
+
+/// A line without blanks and line breaks at its ends, but with tabs.
+pub(crate) fn without_blanks(line: &[u8]) -> &[u8] {
+    let is_blank = |byte: &u8| byte.is_ascii_whitespace() && *byte != b'\t';
+    let begin = line.iter().position(|byte| !is_blank(byte)).unwrap_or(line.len());
+    let end = line.iter().rposition(|byte| !is_blank(byte)).map_or(begin, |last| last + 1);
+    &line[begin..end]
 }
 
 /// The position of the zero bytes in UTF-16 text that is mostly ASCII: 1 for little endian, 0 for big endian.

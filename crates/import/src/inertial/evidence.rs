@@ -13,6 +13,10 @@ use crate::unit::Unit;
 const AGREEMENT: f64 = 0.15;
 /// The ratio by which the disagreement of every other scale must exceed the winner's.
 const CLEAR: f64 = 2.0;
+/// The same ratio for a scale that is so near the winner's that its disagreement cannot be much larger.
+const CLEAR_OF_NEAR: f64 = 1.3;
+/// The ratio of two scales below which they are near: two makers' steps for the same range are 15 % apart.
+const NEAR: f64 = 1.25;
 /// The ratio by which the disagreement of the stated or usual scale must exceed the winner's for that scale to be
 /// overruled.
 const AGAINST: f64 = 3.0;
@@ -85,8 +89,16 @@ impl Evidence {
             (Some(own), _) if !contradicted => Ok(told(own)),
             (None, Some(winner)) => Ok(told(winner)),
             (_, _) if rates.len() > 1 => {
-                let problem =
-                    "expected turns from which the gyroscope's unit can be told, found too few";
+                let problem = match self.near(rates, &times.units) {
+                    Some((one, other)) => format!(
+                        "expected turns that tell a gyroscope in {} from one in {}, found too few",
+                        rates[one], rates[other]
+                    ),
+                    None => {
+                        "expected turns from which the gyroscope's unit can be told, found too few"
+                            .to_owned()
+                    }
+                };
                 Err(Error::undecided(problem, OPTIONS[1]))
             }
             _ => {
@@ -106,11 +118,28 @@ impl Evidence {
         let scale = |(rate, time): (usize, usize)| rates[rate].scale * times[time].scale;
         let errors: Vec<_> = pairs.map(|pair| (pair, error(scale(pair)))).collect();
         let &(best, least) = errors.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let is_clear = errors.iter().all(|&(pair, error)| pair == best || error >= CLEAR * least);
+        let clear = |pair| if is_near(scale(pair), scale(best)) { CLEAR_OF_NEAR } else { CLEAR };
+        let is_clear =
+            errors.iter().all(|&(pair, error)| pair == best || error >= clear(pair) * least);
         // No unit lies at half or twice the scale, but the truth may.
         let is_valley =
             [0.5, 2.0].iter().all(|factor| error(factor * scale(best)) >= VALLEY * least);
         (least <= AGREEMENT && is_clear && is_valley).then_some(best)
+    }
+
+    /// The unit of rate that explains the motion best, and one that is too near to it to be excluded.
+    fn near(&self, rates: &[Unit], times: &[Unit]) -> Option<(usize, usize)> {
+        let motion = self.motion.as_ref().filter(|motion| motion.count() >= FEWEST_STRETCHES)?;
+        let [time] = times else { return None };
+        let scale = |rate: usize| rates[rate].scale * time.scale;
+        let error = |rate: usize| motion.error(scale(rate), Axes::SAME);
+        let best = (0..rates.len()).min_by(|a, b| error(*a).total_cmp(&error(*b)))?;
+        let is_rival = |&rate: &usize| {
+            let is_other = rate != best && is_near(scale(rate), scale(best));
+            is_other && error(rate) < CLEAR_OF_NEAR * error(best)
+        };
+        let rival = (0..rates.len()).find(is_rival)?;
+        (error(best) <= AGREEMENT).then_some((best, rival))
     }
 
     fn is_better(
@@ -133,7 +162,7 @@ impl Evidence {
             return Ok(());
         }
         let usual = Claim::Usual(Unit::new(said.scale, said.name.clone()), source);
-        let all = rates(&usual);
+        let all = rates(&usual, false);
         match self.winner(&all, &times.units) {
             Some(winner)
                 if winner != (0, 0) && self.is_better(winner, (0, 0), &all, &times.units) =>
@@ -176,6 +205,10 @@ impl Evidence {
             format!("--columns gx={x},gy={y},gz={z} (with the log's own names)"),
         ))
     }
+}
+
+fn is_near(scale: f64, other: f64) -> bool {
+    (1.0 / NEAR..NEAR).contains(&(scale / other))
 }
 
 fn hopeless(error: f64) -> Error {

@@ -22,6 +22,8 @@ const NORM: f64 = 0.15;
 const WRONG_NORM: f64 = 1.5;
 /// The largest norm, as a share of gravity, of a log from which gravity was removed.
 const NO_GRAVITY: f64 = 0.3;
+/// The name of a thousandth of gravity as a unit.
+const MILLIGRAVITY: &str = "mg";
 /// The option that decides each unit: of acceleration, rate and time.
 pub(super) const OPTIONS: [&str; 3] = [
     "--units acc=m/s2 (g, mg, 16384lsb, …)",
@@ -52,7 +54,7 @@ pub(crate) fn decide(
     let times = times(time, usual, raw.len())?;
     let evidence = Evidence::find(raw, usual, &times);
     let (force, force_source) = force(acceleration, evidence.rest.as_ref(), raw)?;
-    let rates = rates(rate);
+    let rates = rates(rate, force.name == MILLIGRAVITY);
     let contradicted = [(acceleration, force_source), (time, times.source)]
         .into_iter()
         .any(|(claim, source)| matches!(claim, Claim::Usual(..)) && source == Source::Data);
@@ -125,14 +127,19 @@ fn times(claim: &Claim, usual: f64, samples: usize) -> Result<Candidates, Error>
     }
 }
 
-/// The units that a gyroscope may have.
-pub(super) fn rates(claim: &Claim) -> Vec<Unit> {
-    let names =
-        ["rad/s", "deg/s", "mdps"].into_iter().filter_map(|name| Unit::read(Quantity::Rate, name));
+/// The units that a gyroscope may have, beside an accelerometer `in_milligravity` or in another unit.
+pub(super) fn rates(claim: &Claim, in_milligravity: bool) -> Vec<Unit> {
+    // Autopilots (MAVLink's RAW_IMU) have both in thousandths.
+    let thousandths = in_milligravity.then_some("mrad/s");
+    let names = ["rad/s", "deg/s", "mdps"].into_iter().chain(thousandths);
+    let names = names.filter_map(|name| Unit::read(Quantity::Rate, name));
     // Ranges of ±250, 500, 1000 and 2000 °/s in 16 bits.
     let ranges =
         [131.0, 65.5, 32.8, 16.4].into_iter().filter_map(|each| counts(Quantity::Rate, each));
-    let others = names.chain(ranges);
+    // The same ranges of ST's sensors, whose steps are round instead.
+    let steps = [0.00875, 0.0175, 0.035, 0.07]
+        .map(|step: f64| Unit::new(step.to_radians(), format!("counts of {step} °/s")));
+    let others = names.chain(ranges).chain(steps);
     match claim {
         Claim::Said(unit, _) => vec![unit.clone()],
         Claim::Usual(unit, _) => {

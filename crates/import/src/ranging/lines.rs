@@ -1,10 +1,10 @@
 //! Logs with one line of text for the ranges to all anchors at one epoch.
 
-use super::{Found, USUAL_STEP};
+use super::{Found, Tags, USUAL_STEP};
 use crate::clock::unit_of_range_times;
 use crate::damage::{Damage, Fault};
 use crate::error::{Error, quoted};
-use crate::moment;
+use crate::moment::{self, Days, Moment};
 use crate::options::{Options, TimeUnit};
 use crate::text::{Text, letters};
 
@@ -16,6 +16,8 @@ const SAMPLE: usize = 400;
 struct Message {
     /// Time on the radio's own clock, s.
     clock: Option<f64>,
+    /// The tag, if the line names it.
+    tag: Option<String>,
     /// The anchors, by the names that the radio gives them, with their ranges in m.
     ranges: Vec<(String, f64)>,
     /// The position in the line where the message begins.
@@ -62,6 +64,14 @@ pub(super) fn read(
         }
     }
     damage.accept(messages.len() + damage.count(), options.strict)?;
+    let mut tags = Tags::default();
+    for tag in messages.iter().filter_map(|(_, message)| message.tag.as_deref()) {
+        tags.note(tag);
+    }
+    if let Some(wanted) = tags.wanted(options)? {
+        messages
+            .retain(|(_, message)| message.tag.as_deref().is_none_or(|tag| tag.trim() == wanted));
+    }
     let (times, clock) = times(&messages, options)?;
     let mut found = Found::default();
     for ((_, message), time_us) in messages.iter().zip(times) {
@@ -81,18 +91,33 @@ fn recognised(text: &Text<'_>) -> Option<&'static Form> {
     })
 }
 
-/// The time that precedes a line's message, in s if it is a date or a time of day (`true`).
-fn said_time(before: &str) -> Option<(f64, bool)> {
+/// The time that precedes a line's message.
+#[derive(Debug, Clone, Copy)]
+enum Said {
+    Moment(Moment),
+    Number(f64),
+}
+
+impl Said {
+    fn seconds(self, days: &mut Days) -> f64 {
+        match self {
+            Self::Moment(moment) => days.seconds(moment),
+            Self::Number(number) => number,
+        }
+    }
+}
+
+fn said_time(before: &str) -> Option<Said> {
     let stamp = before.trim_matches(|letter: char| !letter.is_ascii_alphanumeric());
     if let Some(moment) = moment::read(stamp.as_bytes()) {
-        return Some((moment.microseconds() * 1e-6, true));
+        return Some(Said::Moment(moment));
     }
-    stamp.parse().ok().filter(|time: &f64| time.is_finite()).map(|time| (time, false))
+    stamp.parse().ok().filter(|time: &f64| time.is_finite()).map(Said::Number)
 }
 
 /// The time of each message, µs, and the origin of these times.
 fn times(
-    messages: &[(Option<(f64, bool)>, Message)],
+    messages: &[(Option<Said>, Message)],
     options: &Options,
 ) -> Result<(Vec<i64>, String), Error> {
     let microseconds = |seconds: f64| (seconds * 1e6).round() as i64;
@@ -100,13 +125,15 @@ fn times(
         let times = (0..messages.len()).map(|i| microseconds(i as f64 / rate));
         return Ok((times.collect(), format!("counted at {rate} Hz: option")));
     }
-    let said: Option<Vec<_>> = messages.iter().map(|(said, _)| *said).collect();
+    let said: Option<Vec<Said>> = messages.iter().map(|(said, _)| *said).collect();
     if let Some(said) = said {
-        if said.iter().all(|(_, is_moment)| *is_moment) {
-            let times = said.iter().map(|(seconds, _)| microseconds(*seconds)).collect();
+        if said.iter().all(|it| matches!(it, Said::Moment(_))) {
+            let mut days = Days::default();
+            let times = said.iter().map(|said| microseconds(said.seconds(&mut days))).collect();
             return Ok((times, "as dates or times of day: from the data".to_owned()));
         }
-        let values: Vec<_> = said.iter().map(|(value, _)| *value).collect();
+        let mut days = Days::default();
+        let values: Vec<_> = said.iter().map(|said| said.seconds(&mut days)).collect();
         let (unit, from) = match &options.units.time {
             Some(TimeUnit::Clock(unit)) => (unit.clone(), "option"),
             _ => (unit_of_range_times(values.iter().copied(), USUAL_STEP)?, "from the data"),
@@ -128,7 +155,7 @@ fn times(
 fn trek(line: &str, mark: &str) -> Option<Message> {
     let begins = line.find(mark)?;
     let words: Vec<_> = line[begins + mark.len()..].split_whitespace().collect();
-    let [mask, ranges @ .., _count, _sequence, clock, _link] = &words[..] else { return None };
+    let [mask, ranges @ .., _count, _sequence, clock, link] = &words[..] else { return None };
     let hexadecimal = |word: &str| u32::from_str_radix(word, 16).ok();
     let (mask, clock) = (hexadecimal(mask)?, hexadecimal(clock)?);
     if !(1..=8).contains(&ranges.len()) {
@@ -142,7 +169,9 @@ fn trek(line: &str, mark: &str) -> Option<Message> {
         }
     }
     let clock = (mark == "mc ").then(|| f64::from(clock) * 1e-3);
-    Some(Message { clock, ranges: valid, begins })
+    // `aT:A`: the tag and the anchor, of which either may have written the line.
+    let tag = link.get(1..).and_then(|link| link.split_once(':')).map(|(tag, _)| tag.to_owned());
+    Some(Message { clock, tag, ranges: valid, begins })
 }
 
 /// Parses `1151[5.00,8.00,2.25]=6.48 0CA8[0.00,8.00,2.25]=6.51 le_us=2576 est[6.97,8.17,-1.37,53]`.
@@ -155,7 +184,7 @@ fn les(line: &str) -> Option<Message> {
         begins = begins.min(line.find(word)?);
         ranges.push((name.to_owned(), metres(range)?));
     }
-    (!ranges.is_empty()).then_some(Message { clock: None, ranges, begins })
+    (!ranges.is_empty()).then_some(Message { clock: None, tag: None, ranges, begins })
 }
 
 /// Parses `DIST,4,AN0,1151,5.00,8.00,2.25,6.44,AN1,…,POS,7.10,8.24,-1.31,97`.
@@ -169,7 +198,7 @@ fn lec(line: &str) -> Option<Message> {
         let range = fields.nth(3)?;
         ranges.push((name.trim().to_owned(), metres(range)?));
     }
-    Some(Message { clock: None, ranges, begins })
+    Some(Message { clock: None, tag: None, ranges, begins })
 }
 
 /// Parses `AT+RANGE=tid:1,mask:0F,seq:128,range:(997,1321,…),ancid:(0,1,…)`.
@@ -190,7 +219,9 @@ fn makerfabs(line: &str) -> Option<Message> {
             ranges.push((name, centimetres * 1e-2));
         }
     }
-    Some(Message { clock: None, ranges, begins })
+    let (_, behind) = line[begins..].split_once("tid:").unwrap_or_default();
+    let tag = behind.split(',').next().filter(|tag| !tag.is_empty()).map(str::to_owned);
+    Some(Message { clock: None, tag, ranges, begins })
 }
 
 fn metres(text: &str) -> Option<f64> {

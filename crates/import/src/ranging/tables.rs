@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::{Found, USUAL_STEP};
+use super::{Found, Tags, USUAL_STEP};
 use crate::clock::unit_of_range_times;
 use crate::damage::{Damage, Fault};
 use crate::error::{Error, quoted};
@@ -42,11 +42,13 @@ pub(super) fn read(
 ) -> Result<Option<(Found, String, Damage)>, Error> {
     let found = NamedTable::find(text, options, |heading| {
         let time = heading.find("t").ok().flatten();
-        time.zip(form(heading)).ok_or(())
+        let tag = heading.find("user").ok().flatten().map(|tag| tag.column);
+        time.zip(form(heading)).map(|(time, form)| (time, tag, form)).ok_or(())
     });
-    let Some(Ok((table, (time, form)))) = found else { return Ok(None) };
+    let Some(Ok((table, (time, tag, form)))) = found else { return Ok(None) };
     let mut damage = Damage { end_may_be_cut: !text.ends_with_line_break(), ..Damage::default() };
     let (mut rows, mut total, mut are_moments) = (Vec::new(), 0, false);
+    let mut tags = Tags::default();
     for (line, fields) in table.rows() {
         total += 1;
         let field = fields.get(time.column).map(AsRef::as_ref).unwrap_or_default();
@@ -62,19 +64,25 @@ pub(super) fn read(
             });
             continue;
         };
-        rows.push((seconds, said));
+        let tag = tag.and_then(|tag| fields.get(tag)).map(|tag| letters(tag)).unwrap_or_default();
+        tags.note(&tag);
+        rows.push((tag, seconds, said));
     }
     damage.accept(total, options.strict)?;
+    if let Some(wanted) = tags.wanted(options)? {
+        rows.retain(|(tag, ..)| tag.trim() == wanted);
+    }
     let (unit, from) = match &time.unit {
         _ if are_moments => (Unit::new(1.0, "s"), "from the data"),
         Some(unit) => (unit.clone(), "header"),
-        None => {
-            (unit_of_range_times(rows.iter().map(|(time, _)| *time), USUAL_STEP)?, "from the data")
-        }
+        None => (
+            unit_of_range_times(rows.iter().map(|(_, time, _)| *time), USUAL_STEP)?,
+            "from the data",
+        ),
     };
     let mut found = Found::default();
     let mut before = Vec::new();
-    for (seconds, said) in rows {
+    for (_, seconds, said) in rows {
         let time_us = (seconds * unit.scale * 1e6).round() as i64;
         match said {
             Said::Nothing => {}

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::Found;
 use super::labels::place;
+use super::{Found, Tags};
 use crate::containers::{self, Label, RangeTopics};
 use crate::damage::Damage;
 use crate::error::{Error, listed};
@@ -18,16 +18,28 @@ pub(super) fn read(
 ) -> Result<Option<(Found, String, Damage)>, Error> {
     let Some((format, topics)) = containers::ranges(bytes, options)? else { return Ok(None) };
     options.refuse_beside(&["range", "anchor"])?;
-    let wanted = topics.wanted()?;
+    // An option may name a tag in place of a topic.
+    let is_tag =
+        |said: &&str| topics.entries.iter().any(|it| it.heard.tag.as_deref() == Some(said));
+    let chosen = options.topic.as_deref().filter(is_tag);
+    let wanted = topics.wanted(options.topic.as_deref().filter(|_| chosen.is_none()))?;
     let scales = wanted.iter().map(|&it| topics.scale(it)).collect::<Result<Vec<_>, _>>()?;
     let mut told: Vec<_> = scales.iter().map(|(_, told)| told.clone()).collect();
     told.dedup();
     let is_wanted = |topic: &usize| wanted.iter().position(|it| it == topic);
     let entries = topics.entries.iter().filter_map(|it| Some((is_wanted(&it.topic)?, it)));
-    let entries: Vec<_> = entries.collect();
+    let mut entries: Vec<_> = entries.collect();
+    let mut tags = Tags::default();
+    for tag in entries.iter().filter_map(|(_, it)| it.heard.tag.as_deref()) {
+        tags.note(tag);
+    }
+    let choice = Options { topic: chosen.map(str::to_owned), ..Options::default() };
+    if let Some(wanted) = tags.wanted(&choice)? {
+        entries.retain(|(_, it)| it.heard.tag.as_deref().is_none_or(|tag| tag.trim() == wanted));
+    }
     let has_stamps = entries.iter().any(|(_, it)| it.stamp.is_some_and(|stamp| stamp != 0.0));
     let by_topic = names_by_topic(&topics, &wanted, anchors)?;
-    let (mut found, mut tags) = (Found::default(), BTreeSet::new());
+    let mut found = Found::default();
     for &(own, entry) in &entries {
         let time = if has_stamps { entry.stamp.unwrap_or(entry.receipt) } else { entry.receipt };
         let metres = entry.heard.range * scales[own].0;
@@ -38,17 +50,12 @@ pub(super) fn read(
         };
         if metres.is_finite() {
             found.add(time.round() as i64, label, metres);
-            tags.extend(entry.heard.tag.clone());
         }
     }
     let names = listed(wanted.iter().map(|&it| topics.name(it)));
     let noun = if wanted.len() == 1 { "topic" } else { "topics" };
     let times = if has_stamps { "" } else { ", times of receipt, as there are no stamps" };
-    let tags = match tags.len() {
-        0 | 1 => String::new(),
-        count => format!(", of {count} tags ({})", listed(tags.iter().map(String::as_str))),
-    };
-    let conclusion = format!("{}{tags}: {noun} {names}{times}: {format}", told.join(", "));
+    let conclusion = format!("{}: {noun} {names}{times}: {format}", told.join(", "));
     let damage = topics.losses.damage(Part::Record, entries.len());
     damage.accept(entries.len() + damage.count(), options.strict)?;
     Ok(Some((found, conclusion, damage)))

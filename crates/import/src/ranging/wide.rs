@@ -1,7 +1,7 @@
 //! Tables with one column for each anchor.
 
 use super::labels::place;
-use super::{Found, USUAL_STEP};
+use super::{Found, Tags, USUAL_STEP};
 use crate::clock::unit_of_range_times;
 use crate::damage::{Damage, Fault};
 use crate::error::{Error, quoted};
@@ -17,6 +17,9 @@ const FEWEST: usize = 2;
 /// The words that may precede an anchor's name in that of a column.
 const BEFORE: [&str; 10] =
     ["ranging.distance", "distance", "ranging", "range", "dist", "anchor", "rng", "anc", "d", "r"];
+
+/// Those among them that may also precede the number of a column with the anchor's name.
+const NAMES: [&str; 2] = ["anchor", "anc"];
 
 /// A column of ranges.
 struct Ranges {
@@ -40,11 +43,14 @@ pub(super) fn read(
         let ranges = columns(heading, anchors, options);
         let is_wide = ranges.iter().filter(|it| it.is_listed).count() >= FEWEST
             && !heading.names().iter().any(|name| name == "anchor");
-        time.filter(|_| is_wide).map(|time| (time, ranges)).ok_or(())
+        let tag = heading.find("user").ok().flatten().map(|tag| tag.column);
+        time.filter(|_| is_wide).map(|time| (time, tag, ranges)).ok_or(())
     });
-    let Some(Ok((table, (time, columns)))) = found else { return Ok(None) };
+    let Some(Ok((table, (time, tag, columns)))) = found else { return Ok(None) };
+    one_each(&table.heading, &columns)?;
     let mut damage = Damage { end_may_be_cut: !text.ends_with_line_break(), ..Damage::default() };
     let (mut rows, mut total, mut are_moments) = (Vec::new(), 0, false);
+    let mut tags = Tags::default();
     for (line, fields) in table.rows() {
         total += 1;
         let field = fields.get(time.column).map(AsRef::as_ref).unwrap_or_default();
@@ -63,18 +69,24 @@ pub(super) fn read(
             let metres = table.number(fields.get(column.at)?)? * column.scale;
             metres.is_finite().then_some(metres)
         };
-        rows.push((seconds, columns.iter().map(range).collect::<Vec<_>>()));
+        let tag = tag.and_then(|tag| fields.get(tag)).map(|tag| letters(tag)).unwrap_or_default();
+        tags.note(&tag);
+        rows.push((tag, seconds, columns.iter().map(range).collect::<Vec<_>>()));
     }
     damage.accept(total, options.strict)?;
+    if let Some(wanted) = tags.wanted(options)? {
+        rows.retain(|(tag, ..)| tag.trim() == wanted);
+    }
     let (unit, from) = match &time.unit {
         _ if are_moments => (Unit::new(1.0, "s"), "from the data"),
         Some(unit) => (unit.clone(), "header"),
-        None => {
-            (unit_of_range_times(rows.iter().map(|(time, _)| *time), USUAL_STEP)?, "from the data")
-        }
+        None => (
+            unit_of_range_times(rows.iter().map(|(_, time, _)| *time), USUAL_STEP)?,
+            "from the data",
+        ),
     };
     let mut found = Found::default();
-    for (time, ranges) in &rows {
+    for (_, time, ranges) in &rows {
         for (column, range) in columns.iter().zip(ranges) {
             if let Some(range) = range {
                 found.add((time * unit.scale * 1e6).round() as i64, &column.label, *range);
@@ -102,7 +114,25 @@ fn columns(heading: &Heading<'_>, anchors: &[String], options: &Options) -> Vec<
     let listed = columns.iter().filter(|it| it.is_listed).map(|it| it.stem);
     let stems: Vec<_> = listed.flatten().collect();
     columns.retain(|it| it.is_listed || it.stem.is_some_and(|stem| stems.contains(&stem)));
+    // Beside `distance0`, a column `anchor0` names the anchor that it is to.
+    let has_other = columns.iter().any(|it| it.stem.is_some_and(|stem| !NAMES.contains(&stem)));
+    columns.retain(|it| !(has_other && it.stem.is_some_and(|stem| NAMES.contains(&stem))));
     columns
+}
+
+/// Refuses two columns of one anchor.
+fn one_each(heading: &Heading<'_>, columns: &[Ranges]) -> Result<(), Error> {
+    for (place, column) in columns.iter().enumerate() {
+        if let Some(other) = columns[..place].iter().find(|it| it.label == column.label) {
+            let [one, other] = [other, column].map(|it| quoted(&heading.names()[it.at]));
+            let label = quoted(&column.label);
+            return Err(Error::line(
+                heading.line,
+                format!("expected one column of ranges to anchor {label}, found {one} and {other}"),
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// Splits a name from the unit in brackets or behind it.

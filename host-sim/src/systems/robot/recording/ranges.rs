@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use kestirim_import::Options;
-use kestirim_import::ranging::{self, Labels};
+use kestirim_import::ranging::{self, Labels, Tags};
 use kestirim_replay::robot::{Anchors, Difference, Exchange, RangeRow};
 
 use crate::Error;
@@ -76,6 +76,7 @@ pub fn read_moving(
     options: &Options,
 ) -> Result<(RangeLog, Found), Error> {
     let (mut log, mut labels) = (RangeLog::default(), Labels::default());
+    let (mut tags, mut of_tag) = (Tags::default(), Vec::new());
     let bytes = text::bytes(path)?;
     if let Some(found) = of_radio(path, &bytes, anchors, options)? {
         return Ok(found);
@@ -84,14 +85,23 @@ pub fn read_moving(
         path,
         &bytes,
         &Log { what: "ranges", usual_step_s: Some(USUAL_STEP_S), options },
-        |header| header.require(["t", "anchor", "range"]),
-        |&[t, anchor, range], row| {
+        |header| Ok((header.require(["t", "anchor", "range"])?, header.find("user")?)),
+        |&([t, anchor, range], tag), row| {
             let time_us = row.time_us(t)?;
             let range = optional_range(row, range)?;
             log.add(time_us, labels.index(&row.text(anchor)), range);
+            if let Some(tag) = tag {
+                let tag = row.text(tag).trim().to_owned();
+                tags.note(&tag);
+                of_tag.push(tag);
+            }
             Ok(())
         },
     )?;
+    if let Some(wanted) = tags.wanted(options).map_err(|error| table::refused(path, &error))? {
+        let mut of_tag = of_tag.iter();
+        log.rows.retain(|_| of_tag.next().is_none_or(|tag| tag == wanted));
+    }
     log.resolve(&places(&labels, path, anchors)?);
     Ok((log, found))
 }
