@@ -1,5 +1,5 @@
 use crate::matrix::{identity, times};
-use crate::normal::{Normal, amplification, noise};
+use crate::normal::{Inverse, Normal, amplification, noise};
 use crate::{Error, Poses, Triad};
 use kestirim_scalar::{Components, Scalar};
 use nalgebra::{SMatrix, SVector};
@@ -55,6 +55,8 @@ const SCALES: [f64; 2] = [0.5, 2.0];
 const FARTHEST: f64 = 0.5;
 /// The largest residual (g) of a working sensor.
 const MOST_LEFT: f64 = 0.05;
+/// The standard deviation of a misalignment that is not determined (rad): data sheets allow ± 2 % across the axes.
+const MISALIGNMENT: f64 = 0.01;
 const STEPS: u16 = 30;
 
 impl<T: Scalar, const N: usize> Poses<T, N> {
@@ -66,7 +68,8 @@ impl<T: Scalar, const N: usize> Poses<T, N> {
     ///
     /// `noise` is the standard deviation of a pose's mean (m/s²), including everything that a calibration cannot
     /// explain: 0.01 suits consumer sensors, whose offset changes by a mg when they are turned. Standard deviations
-    /// follow from it, or from the residuals if they are larger. From nine poses on, misalignments are estimated, too;
+    /// follow from it, or from the residuals if they are larger, and contain what a usual misalignment does where it is not
+    /// estimated. From nine poses on, misalignments are estimated, too;
     /// if the poses do not determine them, or are fewer, only offset and scale. The fit is by Levenberg–Marquardt.
     ///
     /// # Errors
@@ -107,7 +110,7 @@ impl<T: Scalar, const N: usize> Poses<T, N> {
         let parameters = self.descend(&active, gravity)?;
         parameters.check()?;
         let (normal, count) = self.equations(&parameters, gravity);
-        let gains = observed(&normal, &active)?;
+        let (inverse, gains) = observed(&normal, &active)?;
         let left = normal.squares;
         let residual = (left / count).sqrt();
         // The squares are finite, as `observed` has checked.
@@ -116,7 +119,14 @@ impl<T: Scalar, const N: usize> Poses<T, N> {
         }
         let unknowns = T::from_binary(i32::from(model.unknowns()), 0);
         let sigma = noise(given / gravity, left, count, unknowns);
-        let [ox, oy, oz, x, y, z, xy, xz, yz] = gains.map(|gain| gain * sigma);
+        let mut sigmas = gains.map(|gain| gain * sigma);
+        for (index, &is_known) in active.iter().enumerate() {
+            let moved = normal.shift(&inverse, index);
+            for (sigma, moved) in sigmas.iter_mut().zip(moved).filter(|_| !is_known) {
+                *sigma = sigma.hypot(moved * T::from_f64(MISALIGNMENT));
+            }
+        }
+        let [ox, oy, oz, x, y, z, xy, xz, yz] = sigmas;
         let beside = |sigma: T| (model == AccelerometerModel::Full).then_some(sigma);
         let fit = AccelerometerFit {
             triad: parameters.triad(gravity),
@@ -187,18 +197,19 @@ impl<T: Scalar, const N: usize> Poses<T, N> {
     }
 }
 
-/// The amplification of a pose's noise in each parameter; an error if it is too large in one of them.
+/// The inverse of the equations, and the amplification of a pose's noise in each parameter; an error if it is too large in one
+/// of them.
 fn observed<T: Scalar>(
     normal: &Normal<T, UNKNOWNS>,
     active: &[bool; UNKNOWNS],
-) -> Result<[T; UNKNOWNS], Error> {
+) -> Result<(Inverse<T, UNKNOWNS>, [T; UNKNOWNS]), Error> {
     if !normal.is_finite() {
         return Err(Error::NotFinite);
     }
     let inverse = normal.inverse(active, T::ZERO).ok_or(Error::NotObservable)?;
     let gains = amplification(&inverse);
     let is_told = gains.iter().all(|&gain| gain <= T::from_f64(MOST_AMPLIFICATION));
-    if is_told { Ok(gains) } else { Err(Error::NotObservable) }
+    if is_told { Ok((inverse, gains)) } else { Err(Error::NotObservable) }
 }
 
 /// The parameters, with the offset in units of gravity.

@@ -49,6 +49,17 @@ impl<T: Scalar, const N: usize> Normal<T, N> {
         T::all_finite(self.a.as_flattened()) && T::all_finite(&self.b) && self.squares.is_finite()
     }
 
+    /// By how much a unit of the unknown at `index`, which is held at zero, moves the others.
+    pub(crate) fn shift(&self, inverse: &Inverse<T, N>, index: usize) -> [T; N] {
+        let mut moved = [T::ZERO; N];
+        for (moved, line) in moved.iter_mut().zip(inverse) {
+            for (&entry, own) in line.iter().zip(&self.a) {
+                *moved += entry * own.get(index).copied().unwrap_or(T::ZERO);
+            }
+        }
+        moved
+    }
+
     /// The inverse over the `active` unknowns, with `damping` times their own weights added (Marquardt); `None` if they
     /// cannot be separated.
     pub(crate) fn inverse(&self, active: &[bool; N], damping: T) -> Option<Inverse<T, N>> {

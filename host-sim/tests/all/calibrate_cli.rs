@@ -165,6 +165,35 @@ fn more_positions_tell_more() {
 }
 
 #[test]
+fn turns_beyond_the_range_are_left_out() {
+    /// rad/s; a turn by 120° is faster.
+    const RANGE: f64 = 2.2;
+    let desk = Desk::new();
+    let mut clipped = String::new();
+    for (index, line) in log(&positions(&UPS), Some(truth())).lines().enumerate() {
+        let fields: Vec<&str> = line.split(',').collect();
+        if index == 0 {
+            writeln!(clipped, "{line}").expect("a string takes it");
+            continue;
+        }
+        let rates = fields[4..].iter().map(|field| field.parse::<f64>().expect("a rate"));
+        let rates: Vec<_> = rates.map(|it| it.clamp(-RANGE, RANGE).to_string()).collect();
+        writeln!(clipped, "{},{}", fields[..4].join(","), rates.join(",")).expect("the same");
+    }
+    let (log, out) = (desk.file("clipped.csv", clipped), desk.named("calibration.csv"));
+    let report = json(&host_sim(&[&calibrate(&log, &out)[..], &["--json"]].concat()));
+    let turns = report["turns"].as_u64().expect("a number");
+    assert!((3..11).contains(&turns), "{report}");
+    let told = report["warnings"].to_string();
+    let expected = format!("in {} of 11 turns an axis reached the end of its range", 11 - turns);
+    assert!(told.contains(&expected), "{told}");
+    for ((name, value, sigma), truth) in parameters(&report).iter().zip(true_parameters()) {
+        let off = sigma.map(|sigma| (value - truth).abs() / sigma);
+        assert!(off.is_none_or(|off| off < 4.0), "{name}: {value} ± {sigma:?}, {truth}");
+    }
+}
+
+#[test]
 fn twelve_positions_tell_what_is_wrong_and_a_walk_comes_out_right() {
     let desk = Desk::new();
     let positions = desk.file("positions.csv", log(&positions(&UPS), Some(truth())));

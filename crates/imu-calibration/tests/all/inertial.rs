@@ -82,6 +82,36 @@ fn six_sides_tell_offset_and_scale() {
 }
 
 #[test]
+fn six_tilted_sides_allow_for_axes_that_are_not_orthogonal() {
+    let (mut squares, mut count) = (0.0, 0.0);
+    for signs in 0..8 {
+        let [xy, xz, yz] = [0, 1, 2].map(|bit| if signs >> bit & 1 == 1 { 0.01 } else { -0.01 });
+        let matrix = Matrix3::new(1.0, xy, xz, 0.0, 1.0, yz, 0.0, 0.0, 1.0);
+        let truth = Triad { matrix, ..accelerometer() };
+        let mut sides = Poses::<f64, 6>::new();
+        for (index, attitude) in attitudes(6).into_iter().enumerate() {
+            let by = if index % 2 == 0 { 0.25 } else { -0.2 };
+            let tilt = Rotation3::from_euler_angles(by, -0.8 * by, by);
+            let up = (tilt * attitude).inverse() * Vector3::z() * GRAVITY;
+            let mut pose = Pose::new();
+            pose.push(&measured(&truth, &up), &Vector3::zeros()).unwrap();
+            sides.add(pose).unwrap();
+        }
+        let fit = sides.accelerometer(GRAVITY, 0.01).unwrap();
+        assert_eq!(fit.model, AccelerometerModel::OffsetAndScale);
+        for axis in 0..3 {
+            let offset = (fit.triad.offset - truth.offset)[axis] / fit.offset_sigma[axis];
+            let sigma = fit.matrix_sigma[axis][axis].unwrap();
+            let scale = (fit.triad.matrix[(axis, axis)] - truth.matrix[(axis, axis)]) / sigma;
+            squares += offset * offset + scale * scale;
+            count += 2.0;
+        }
+    }
+    let typical = f64::sqrt(squares / count);
+    assert!((0.2..1.5).contains(&typical), "{typical} σ");
+}
+
+#[test]
 fn nine_poses_on_sides_alone_tell_no_misalignment() {
     let sides: Vec<_> = attitudes(6).into_iter().cycle().take(12).collect();
     let fit = poses::<f64>(&sides, &mut Noise(3), 0.0).accelerometer(GRAVITY, 0.01).unwrap();

@@ -60,6 +60,13 @@ impl Calibration for Calibrate {
         let faults = pedestrian::check(&log.samples).into_iter().filter(Finding::is_fault);
         let mut warnings = log.warnings;
         warnings.extend(faults.map(|finding| finding.sentence()));
+        warnings.extend((found.clipped > 0).then(|| {
+            let all = found.clipped + found.turns;
+            format!(
+                "in {} of {all} turns an axis reached the end of its range: left out; turn slower",
+                found.clipped
+            )
+        }));
         output::warn_of(from, &warnings);
         let report = Report::new(&found, parameters, log.import, warnings);
         output::show(&report, matches.get_flag("json"))

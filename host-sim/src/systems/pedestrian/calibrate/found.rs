@@ -27,6 +27,10 @@ const POSE_NOISE: f64 = 0.01;
 const RATE_NOISE: f64 = 0.0005;
 /// The error of a turn apart from scale and misalignment, in rad: 0.2°.
 const TURN_NOISE: f64 = 0.003;
+/// The number of samples in a row with the largest rate of an axis that are cut off there.
+const ENOUGH: usize = 3;
+/// The smallest rate at which a gyroscope's range may end, in rad/s.
+const FAST: f64 = 1.0;
 /// The number of times that the turns are integrated: each pass leaves a hundredth of the error.
 const PASSES: usize = 4;
 
@@ -37,6 +41,8 @@ pub(super) struct Found {
     pub(super) sigmas: [Sigmas; 2],
     pub(super) poses: usize,
     pub(super) turns: usize,
+    /// The number of turns that are left out, as an axis reached the end of its range.
+    pub(super) clipped: usize,
     pub(super) accelerometer: AccelerometerModel,
     /// The model of the gyroscope; `None` if the turns determine only the bias.
     pub(super) gyroscope: Option<GyroscopeModel>,
@@ -70,7 +76,7 @@ pub(super) fn find(samples: &[Sample]) -> Result<Found, Refusal> {
     let accelerometer = poses.accelerometer(STANDARD_GRAVITY, POSE_NOISE).map_err(&refused)?;
     let bias = poses.gyroscope_bias(RATE_NOISE).map_err(&refused)?;
     let start = Triad { offset: bias.bias, ..Triad::identity() };
-    let (turned, turns) = turned(samples, &stands, &accelerometer, start);
+    let (turned, turns, clipped) = turned(samples, &stands, &accelerometer, start);
     let of_gyroscope = Sigmas {
         offset: bias.sigma.map(Some),
         matrix: turned.as_ref().map(|fit| fit.matrix_sigma).unwrap_or_default(),
@@ -85,6 +91,7 @@ pub(super) fn find(samples: &[Sample]) -> Result<Found, Refusal> {
         sigmas: [of_accelerometer, of_gyroscope],
         poses: poses.count(),
         turns,
+        clipped,
         accelerometer: accelerometer.model,
         gyroscope: turned.as_ref().map(|fit| fit.model),
         residual: accelerometer.residual,
@@ -101,29 +108,54 @@ fn pose(samples: &[Sample]) -> Result<Pose<f64>, Error> {
     Ok(pose)
 }
 
-/// The fit of the gyroscope, if the turns determine it, and the number of turns.
+/// The fit of the gyroscope, if the turns determine it, the number of turns, and that of turns in which an axis was cut off.
 fn turned(
     samples: &[Sample],
     stands: &[Stand],
     accelerometer: &AccelerometerFit<f64>,
     start: Triad<f64>,
-) -> (Option<GyroscopeFit<f64>>, usize) {
+) -> (Option<GyroscopeFit<f64>>, usize, usize) {
+    let most = most(samples);
+    let mut pairs: Vec<_> = stands.windows(2).collect();
+    let all = pairs.len();
+    pairs.retain(|pair| {
+        let between = samples.get(pair[0].samples.end..pair[1].samples.start);
+        !is_clipped(between.unwrap_or_default(), most)
+    });
+    let clipped = all - pairs.len();
     let mut triad = start;
-    let mut result = (None, 0);
+    let mut result = (None, 0, clipped);
     for _ in 0..PASSES {
         let Ok(mut gyroscope) = Gyroscope::new(triad) else { break };
         let mut turns = 0;
-        for pair in stands.windows(2) {
-            turns +=
-                usize::from(add(&mut gyroscope, triad, samples, pair, accelerometer).is_some());
+        for pair in &pairs {
+            let added = add(&mut gyroscope, triad, samples, pair, accelerometer);
+            turns += usize::from(added.is_some());
         }
         result.1 = turns;
         match gyroscope.solve(TURN_NOISE) {
             Ok(fit) => (triad, result.0) = (fit.triad, Some(fit)),
-            Err(_) => return (None, turns),
+            Err(_) => return (None, turns, clipped),
         }
     }
     result
+}
+
+/// The largest rate of each axis.
+fn most(samples: &[Sample]) -> [f64; 3] {
+    let rates = samples.iter().map(|sample| sample.angular_rate);
+    rates.fold([0.0; 3], |most, rate| std::array::from_fn(|axis| most[axis].max(rate[axis].abs())))
+}
+
+/// Whether an axis stays at its largest rate: it turned faster than its range allows.
+fn is_clipped(turn: &[Sample], most: [f64; 3]) -> bool {
+    turn.windows(ENOUGH).any(|samples| {
+        (0..3).any(|axis| {
+            let end = most[axis].max(FAST);
+            let rates = || samples.iter().map(|sample| sample.angular_rate[axis]);
+            rates().all(|rate| rate >= end) || rates().all(|rate| rate <= -end)
+        })
+    })
 }
 
 /// Adds the turn between two stands, if all of it was recorded.
