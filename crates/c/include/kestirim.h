@@ -371,7 +371,7 @@ typedef struct kestirim_gnss kestirim_gnss;
 typedef struct kestirim_gnss_broadcast kestirim_gnss_broadcast;
 
 // Corrections: those of a service (SSR in RTCM 3) for the satellites of an ephemeris collection. With them positions become as
-// good as the service is, a decimetre or less, without files. It computes in double precision, for processors with enough memory.
+// good as the service is, a decimetre or less, without files. The filter's `broadcast` is 1 with them, too. It computes in double precision, for processors with enough memory.
 typedef struct kestirim_gnss_corrections kestirim_gnss_corrections;
 
 // A pedestrian tracker: estimates the path of a walking foot from the IMU on it.
@@ -411,6 +411,14 @@ typedef struct kestirim_drone_measurement {
   float level;
 } kestirim_drone_measurement;
 
+// Whether an estimate can be relied upon, and all reasons why it cannot.
+typedef struct kestirim_health {
+  // Degree to which it can be relied upon: the state of the worst reason.
+  kestirim_state state;
+  // The reasons, one bit each: `kestirim_reason`.
+  uint32_t reasons;
+} kestirim_health;
+
 // Estimated place of the transmitter.
 typedef struct kestirim_drone_place {
   // Place of the transmitter, m: x, y.
@@ -419,15 +427,10 @@ typedef struct kestirim_drone_place {
   float sigma;
   // Level received at one metre from the transmitter, in the measurements' unit.
   float level;
+  // Whether the place can be relied upon: `DROPOUT` with fewer than three measurements, `INNOVATIONS` if the levels show a step,
+  // as after a change of the receiver's gain. How well the measurements determine the place is shown by its standard deviation.
+  struct kestirim_health health;
 } kestirim_drone_place;
-
-// Whether an estimate can be relied upon, and all reasons why it cannot.
-typedef struct kestirim_health {
-  // Degree to which it can be relied upon: the state of the worst reason.
-  kestirim_state state;
-  // The reasons, one bit each: `kestirim_reason`.
-  uint32_t reasons;
-} kestirim_health;
 
 // Settings of a GNSS filter.
 typedef struct kestirim_gnss_config {
@@ -440,8 +443,8 @@ typedef struct kestirim_gnss_config {
   double ut1_minus_gps;
   // Vector from the marker to the antenna's reference point, m: east, north, up.
   double eccentricity[3];
-  // Source of orbits and clocks: 0 for a service, 1 for the satellites' broadcast ephemerides
-  // (`kestirim_gnss_broadcast_at`), whose errors persist for hours.
+  // Source of orbits and clocks: 0 for the products of a service, 1 for the satellites' broadcast ephemerides, corrected or not
+  // (`kestirim_gnss_corrections_at`, `kestirim_gnss_broadcast_at`), whose errors persist for hours.
   uint8_t broadcast;
 } kestirim_gnss_config;
 
@@ -605,6 +608,9 @@ typedef struct kestirim_tag_config {
   uint32_t calibration;
   // Height of the tag in the room frame, m.
   float height;
+  // Bounds of the tag's position in the room frame, m: x, y of two opposite corners; all zero if there are none. Between the two
+  // sides of a line of anchors they decide alone.
+  float room[4];
 } kestirim_tag_config;
 
 // An anchor, with its position and range bias.
@@ -740,11 +746,6 @@ kestirim_status kestirim_drone_update(struct kestirim_drone *search,
 // Errors: `NO_ESTIMATE` without a measurement; `CONTRADICTORY` if no place in the area explains the measurements.
 kestirim_status kestirim_drone_estimate(const struct kestirim_drone *search,
                                         struct kestirim_drone_place *estimate);
-
-// Whether an estimate of the transmitter's place can be relied upon: `DROPOUT` with fewer than three measurements. How
-// well the measurements determine the place is shown by its standard deviation.
-kestirim_status kestirim_drone_health(const struct kestirim_drone *search,
-                                      struct kestirim_health *health);
 
 // Stores the transmitter search in a buffer, to be restored after a sleep or on another machine.
 // `KESTIRIM_DRONE_SNAPSHOT` bytes are enough; `length` receives the number of bytes used.

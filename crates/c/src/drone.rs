@@ -71,6 +71,9 @@ pub struct DronePlace {
     pub sigma: f32,
     /// Level received at one metre from the transmitter, in the measurements' unit.
     pub level: f32,
+    /// Whether the place can be relied upon: `DROPOUT` with fewer than three measurements, `INNOVATIONS` if the levels show a step,
+    /// as after a change of the receiver's gain. How well the measurements determine the place is shown by its standard deviation.
+    pub health: Health,
 }
 
 /// Size of a transmitter search on this target, bytes. An estimate needs 16 kB of stack on a computer, 9 kB on a
@@ -144,27 +147,13 @@ pub unsafe extern "C" fn kestirim_drone_estimate(
             return Err(Status::NoEstimate);
         }
         let found = search.estimate::<POINTS>()?;
+        let few = search.measurements().len() < FEWEST;
         answer.write(DronePlace {
             place: floats(&found.place),
-            sigma: found.moments().spread().to_f32(),
+            sigma: found.sigma().to_f32(),
             level: found.level.to_f32(),
+            health: search.health(&found).with(Reason::Dropout, few).into(),
         });
-        Ok(())
-    })
-}
-
-/// Whether an estimate of the transmitter's place can be relied upon: `DROPOUT` with fewer than three measurements. How
-/// well the measurements determine the place is shown by its standard deviation.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn kestirim_drone_health(
-    search: *const Drone,
-    health: *mut Health,
-) -> Status {
-    status(|| {
-        // SAFETY: the caller keeps what the header asks for.
-        let (search, answer) = unsafe { (held(search)?, place(health)?) };
-        let few = search.measurements().len() < FEWEST;
-        answer.write(kestirim_health::Health::GOOD.with(Reason::Dropout, few).into());
         Ok(())
     })
 }

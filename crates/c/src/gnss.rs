@@ -67,8 +67,8 @@ pub struct GnssConfig {
     pub ut1_minus_gps: f64,
     /// Vector from the marker to the antenna's reference point, m: east, north, up.
     pub eccentricity: [f64; 3],
-    /// Source of orbits and clocks: 0 for a service, 1 for the satellites' broadcast ephemerides
-    /// (`kestirim_gnss_broadcast_at`), whose errors persist for hours.
+    /// Source of orbits and clocks: 0 for the products of a service, 1 for the satellites' broadcast ephemerides, corrected or not
+    /// (`kestirim_gnss_corrections_at`, `kestirim_gnss_broadcast_at`), whose errors persist for hours.
     pub broadcast: u8,
 }
 

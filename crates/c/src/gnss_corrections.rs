@@ -12,7 +12,7 @@ use crate::memory::{self, Handle, argument, array, held, held_mut, place, status
 use crate::{GnssSatellite, GnssTime, Status};
 
 /// Corrections: those of a service (SSR in RTCM 3) for the satellites of an ephemeris collection. With them positions become as
-/// good as the service is, a decimetre or less, without files. It computes in double precision, for processors with enough memory.
+/// good as the service is, a decimetre or less, without files. The filter's `broadcast` is 1 with them, too. It computes in double precision, for processors with enough memory.
 #[derive(Debug)]
 pub struct GnssCorrections {
     _private: [u8; 0],

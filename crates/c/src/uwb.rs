@@ -3,7 +3,7 @@
 use heapless::Vec;
 use kestirim_scalar::Scalar;
 use kestirim_uwb_tracker::{
-    Anchor as Place, Config, Health, OdometrySample, Outcome, Report, State as Stage,
+    Anchor as Place, Config, Health, OdometrySample, Outcome, Report, Room, State as Stage,
 };
 use nalgebra::SVector;
 
@@ -32,6 +32,9 @@ pub struct TagConfig {
     pub calibration: u32,
     /// Height of the tag in the room frame, m.
     pub height: f32,
+    /// Bounds of the tag's position in the room frame, m: x, y of two opposite corners; all zero if there are none. Between the two
+    /// sides of a line of anchors they decide alone.
+    pub room: [f32; 4],
 }
 
 impl TagConfig {
@@ -40,11 +43,27 @@ impl TagConfig {
         if !height.is_finite() {
             return Err(Status::NotFinite);
         }
-        match self.calibration {
-            0 => Ok(Config::uncalibrated(height)),
-            1 => Ok(Config::calibrated(height)),
-            _ => Err(Status::InvalidArgument),
+        let config = match self.calibration {
+            0 => Config::uncalibrated(height),
+            1 => Config::calibrated(height),
+            _ => return Err(Status::InvalidArgument),
+        };
+        Ok(Config { room: self.to_room()?, ..config })
+    }
+
+    fn to_room(self) -> Result<Option<Room<Number>>, Status> {
+        let [x0, y0, x1, y1] = self.room;
+        if self.room == [0.0; 4] {
+            return Ok(None);
         }
+        if !self.room.iter().all(|it| it.is_finite()) {
+            return Err(Status::NotFinite);
+        }
+        if x0 == x1 || y0 == y1 {
+            return Err(Status::InvalidArgument);
+        }
+        let [x0, y0, x1, y1] = self.room.map(Number::from_f32);
+        Ok(Some(Room::plane(x0, y0, x1, y1)))
     }
 }
 

@@ -56,6 +56,13 @@ impl<T: Scalar, const L: usize> BeaconEstimate<T, L> {
         self.posterior.moments()
     }
 
+    /// Standard deviation of the place, m: that of the posterior about the place, which is not quite its mean.
+    pub fn sigma(&self) -> T {
+        let moments = self.moments();
+        let [x, y] = moments.mean();
+        T::norm(&[moments.spread(), x - self.place[0], y - self.place[1]])
+    }
+
     /// The estimate from all measurements, restricted to places in `region` that are `inside`.
     pub(crate) fn of(
         mut channel: FreeSpace<T>,

@@ -21,7 +21,7 @@ use crate::{Area, BeaconEstimate, Error, Health, Thinned};
 ///     search.measure(&Measurement::new(place, 40.0, -level)?);
 /// }
 /// let found = search.estimate::<500>()?;
-/// println!("{:?} m, ± {} m", found.place, found.moments().spread());
+/// println!("{:?} m, ± {} m", found.place, found.sigma());
 /// # Ok::<(), kestirim_user_locator::Error>(())
 /// ```
 #[derive(Clone, Debug)]

@@ -1,5 +1,8 @@
 # find_package(kestirim REQUIRED PATHS …/crates/c/contrib/cmake) and link kestirim::kestirim.
-set(KESTIRIM_TARGET "" CACHE STRING "Rust target, such as thumbv7em-none-eabihf; empty: this computer")
+# What a project has set stays: before CMake 3.21, or with its policies, an entry of the cache would replace it.
+if(NOT DEFINED KESTIRIM_TARGET)
+  set(KESTIRIM_TARGET "" CACHE STRING "Rust target, such as thumbv7em-none-eabihf; empty: this computer")
+endif()
 option(KESTIRIM_FIXED "Compute in fixed point, without a floating-point unit" OFF)
 get_filename_component(kestirim_crate "${CMAKE_CURRENT_LIST_DIR}/../.." ABSOLUTE)
 set(KESTIRIM_BUILD "${CMAKE_BINARY_DIR}/kestirim" CACHE PATH "Where cargo builds")

@@ -259,10 +259,10 @@ pub(crate) fn drone<T: Scalar>(stream: &[u8]) -> String {
         search.measure(&Measurement::new([x, y], height, -level).expect("a measurement"));
     }
     let found = search.estimate::<500>().expect("a place");
-    let ([x, y], spread) = (found.place, found.moments().spread());
+    let [x, y] = found.place;
     let mut lines = Lines::default();
-    lines.numbers("place", &[x, y, spread, found.level]);
-    lines.health(kestirim_health::Health::GOOD);
+    lines.numbers("place", &[x, y, found.sigma(), found.level]);
+    lines.health(search.health(&found));
     lines.0
 }
 

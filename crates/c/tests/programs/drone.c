@@ -22,10 +22,8 @@ int main(void)
         SLEEP_NOW(drone, search);
     }
     kestirim_drone_place place;
-    kestirim_health health;
     port_check(kestirim_drone_estimate(search, &place));
     port_tell("place", &place, 4);
-    port_check(kestirim_drone_health(search, &health));
-    port_tell("health", &health.reasons, 1);
+    port_tell("health", &place.health.reasons, 1);
     return 0;
 }

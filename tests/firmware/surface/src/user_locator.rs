@@ -97,6 +97,7 @@ fn finds<T: Scalar, const M: usize, const L: usize>() -> Option<()> {
     };
     let estimate = any(Beacon::estimate::<L>(&beacon, &region, inside)).ok()?;
     keep(BeaconEstimate::moments(&estimate));
+    keep(BeaconEstimate::sigma(&estimate));
     keep(Beacon::credible(&beacon, &estimate, numbers(), number()));
     keep(Beacon::health(&beacon, &estimate));
     Some(())
