@@ -52,6 +52,7 @@ pub(crate) fn pedestrian<'py>(
         let mut found = trace(&samples, &options)?;
         if let Some(field) = &field {
             found.walk.correct_heading(&samples, field, &options);
+            found.turn_moments();
         }
         Ok((found, check(&samples)))
     });

@@ -10,13 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _kestirim
-from ._check import Complexes, Floats, floats, maybe_floats
+from ._check import Complexes, Floats, finite, floats, maybe_floats
 
 
 def _noise(r: npt.ArrayLike, count: int) -> Floats:
     """R as a matrix, from a matrix or from its diagonal."""
     array = np.asarray(r, dtype=np.float64)
-    return floats("R", np.diag(array) if array.ndim == 1 else array, count, count)
+    return finite("R", np.diag(array) if array.ndim == 1 else array, count, count)
 
 
 @dataclass(frozen=True)
@@ -86,16 +86,16 @@ class _Filter(_Sleeper):
         limits: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0),
         method: str = "",
     ) -> None:
-        state = floats("x", x, "k")
+        state = finite("x", x, "k")
         count = len(state)
-        rows = floats("H", H, "m", count)
+        rows = finite("H", H, "m", count)
         self._measurements = len(rows)
         self._filter = _kestirim.Filter(
             state,
-            floats("P", P, count, count),
-            floats("F", F, count, count),
+            finite("P", P, count, count),
+            finite("F", F, count, count),
             rows,
-            floats("Q", Q, count, count),
+            finite("Q", Q, count, count),
             _noise(R, len(rows)),
             kind,
             forgetting,

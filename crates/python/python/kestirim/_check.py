@@ -44,6 +44,15 @@ def floats(name: str, value: npt.ArrayLike, *shape: Union[int, str]) -> Floats:
     return array
 
 
+def finite(name: str, value: npt.ArrayLike, *shape: Union[int, str]) -> Floats:
+    """The value as `floats` converts it, all of whose numbers must be finite."""
+    array = floats(name, value, *shape)
+    wrong = np.flatnonzero(~np.isfinite(array))
+    if wrong.size:
+        raise KestirimError(f"{name}: expected numbers, found {array.flat[wrong[0]]} at index {wrong[0]}")
+    return array
+
+
 def ints(name: str, value: npt.ArrayLike, *shape: Union[int, str]) -> Ints:
     """The value as an int64 array of this shape; numbers that are not whole are refused."""
     given: npt.NDArray[Any] = np.asarray(value)

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _kestirim
-from ._check import Floats, floats, ints, maybe_floats
+from ._check import Floats, finite, floats, ints, maybe_floats
 from ._kestirim import KestirimError
 from ._results import FlightTrack, ImuLog, ReceiverTrack, SmoothedTag, Strides, TagTrack, UserTrack, Walk
 
@@ -137,6 +137,8 @@ def robot(
     Equals `host-sim replay robot`, to the bit.
     """
     places = floats("anchors", anchors, "a", 3)
+    if len(places) == 0:
+        raise KestirimError("anchors: expected at least one")
     times = floats("t", t, "n")
     count = len(times)
     if height is not None and heights is not None:
@@ -217,7 +219,7 @@ def drone(
     """
     if (path_loss is None) == (rssi is None):
         raise KestirimError("drone: expected path_loss or rssi, one of the two")
-    times = floats("t", t, "n")
+    times = finite("t", t, "n")
     count = len(times)
     name, value = ("path_loss", path_loss) if rssi is None else ("rssi", rssi)
     assert value is not None
@@ -295,7 +297,7 @@ def uav(
     if absolute and aircraft.trim is None:
         raise KestirimError("absolute: expected a model with a trim, P1 or one that has it")
     rows = _rows(outputs)
-    times = floats("t", t, "n")
+    times = finite("t", t, "n")
     count = len(times)
     results = _kestirim.uav(
         times,
@@ -402,8 +404,10 @@ def _over_time(
 ) -> Optional[tuple[Floats, Floats]]:
     if value is None:
         return None
-    times = floats(f"{name}, times", value[0], "k")
-    return times, floats(f"{name}", value[1], len(times))
+    times = finite(f"{name}, times", value[0], "k")
+    if len(times) == 0 or np.any(np.diff(times) < 0):
+        raise KestirimError(f"{name}, times: expected at least one, in order")
+    return times, finite(name, value[1], len(times))
 
 
 def _imu(
@@ -411,7 +415,7 @@ def _imu(
 ) -> Optional[tuple[Floats, Floats]]:
     if value is None:
         return None
-    times = floats("imu, times", value[0], "k")
+    times = finite("imu, times", value[0], "k")
     return times, floats("imu, accelerations", value[1], len(times), 3)
 
 
@@ -420,6 +424,6 @@ def _wheels(
 ) -> Optional[tuple[Floats, Floats, Floats]]:
     if value is None:
         return None
-    times = floats("wheels, times", value[0], "k")
+    times = finite("wheels, times", value[0], "k")
     count = len(times)
     return times, floats("wheels, speeds", value[1], count), floats("wheels, turn rates", value[2], count)

@@ -7,8 +7,9 @@ pub struct Course<const K: usize> {
 }
 
 impl<const K: usize> Course<K> {
-    /// A course of values at these times, µs, which do not decrease.
-    pub fn new(rows: Vec<(i64, [f64; K])>) -> Self {
+    /// A course of values at these times, µs, in any order.
+    pub fn new(mut rows: Vec<(i64, [f64; K])>) -> Self {
+        rows.sort_by_key(|(time_us, _)| *time_us);
         Self { rows }
     }
 

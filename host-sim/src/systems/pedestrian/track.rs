@@ -40,6 +40,7 @@ impl Track {
         {
             trace.walk.warnings.push(refused);
         }
+        trace.turn_moments();
         Ok(Self { averaged, trace })
     }
 
