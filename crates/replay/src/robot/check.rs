@@ -5,6 +5,7 @@ mod in_space;
 mod inertial;
 mod jumps;
 mod moments;
+mod steps_back;
 mod stuck;
 mod together;
 mod wheels;
@@ -67,6 +68,7 @@ pub fn check<'a>(
         KnownHeight::Unknown | KnownHeight::NotFound => [None, None],
     };
     findings.extend(together::find(&parts));
+    findings.extend(steps_back::find(&parts));
     findings.extend(inertial::find(&parts));
     let parts: Vec<Vec<Range>> = parts.into_iter().map(ranges).collect();
     let name = |anchor: usize| anchors.names.get(anchor).map_or("", String::as_str);

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use kestirim_health::Health;
 use kestirim_scalar::{Q16_16, Scalar};
-use kestirim_uav_estimator::{self as uav, Dynamics, FlightObserver};
+use kestirim_uav_estimator::{self as uav, FlightObserver};
 use nalgebra::{SMatrix, SVector};
 
 use super::augmented::Augmented;
@@ -106,7 +106,8 @@ impl<T: Scalar> Follow for Augmented<T> {
 /// An observer whose gain is computed once the usual interval is known.
 #[derive(Debug)]
 struct Observer<T: Scalar, const P: usize> {
-    dynamics: Dynamics,
+    model: Model,
+    outputs: Vec<usize>,
     c: SMatrix<f64, P, 4>,
     poles: Poles,
     usual: f64,
@@ -117,7 +118,8 @@ struct Observer<T: Scalar, const P: usize> {
 impl<T: Scalar, const P: usize> Observer<T, P> {
     fn new(model: &Model, outputs: &[usize], options: &Options) -> Self {
         Self {
-            dynamics: model.dynamics,
+            model: model.clone(),
+            outputs: outputs.to_vec(),
             c: rows(model, outputs),
             poles: options.poles,
             usual: 0.0,
@@ -130,7 +132,7 @@ impl<T: Scalar, const P: usize> Observer<T, P> {
     fn begin(&self) -> Result<Box<FlightObserver<T, P, KEPT>>, uav::Error> {
         let poles = discrete(self.poles, self.usual);
         let mut observer =
-            Box::new(FlightObserver::new(&self.dynamics, &self.c, &poles, self.usual)?);
+            Box::new(FlightObserver::new(&self.model.dynamics, &self.c, &poles, self.usual)?);
         if let Some(before) = &self.before {
             observer.take(before)?;
         }
@@ -144,7 +146,7 @@ impl<T: Scalar, const P: usize> Follow for Observer<T, P> {
     }
 
     fn take(&mut self, sample: &Sample) -> Result<(), uav::Error> {
-        let sample = sized(sample);
+        let sample = sized(&self.model.without_direct(sample, &self.outputs));
         if self.before.is_some() {
             let mut observer = match self.running.take() {
                 Some(observer) => observer,

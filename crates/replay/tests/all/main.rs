@@ -4,3 +4,5 @@
 mod robot_smoother;
 #[cfg(feature = "serde")]
 mod uav_grids;
+#[cfg(feature = "serde")]
+mod uav_live;

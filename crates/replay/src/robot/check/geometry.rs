@@ -118,11 +118,18 @@ pub(super) fn check(
         !is_calibrated && heard.len() == needed && left >= NOTHING_TO_SPARE_M;
     // A height that was found from the ranges may be wrong by as much.
     let is_of_height = left < CONTRADICTION_M && !is_given && !is_contradiction_of_few;
-    if left < SUSPICION_M || is_of_height {
+    if left < SUSPICION_M {
+        return Some(agree());
+    }
+    let consequence = "positions may be wrong by as much";
+    if let Some((reason, remedy)) = tried.too_short(left, heard.len(), &anchors.names) {
+        let found = format!("ranges and anchors disagree by {left:.2} m");
+        return Some(Finding::fault("geometry", reason, found, consequence, remedy));
+    }
+    if is_of_height {
         return Some(agree());
     }
     let found = format!("ranges and anchors disagree by {left:.1} m");
-    let consequence = "positions may be wrong by as much";
     if let Some((reason, remedy)) = tried.explanation(left, heard.len(), is_given, &anchors.names) {
         return Some(match reason {
             Some(reason) => Finding::fault("geometry", reason, found, consequence, remedy),
@@ -212,6 +219,13 @@ mod tests {
         let mut listed = places.clone();
         listed[0][0] += 1.2;
         assert_eq!(reason_among(|metres| metres, &places, &listed), Some(Reason::Anchor));
+        // By half of it only if its ranges become too short: as too long ones they count as obstructed.
+        for (by, told) in [(0.6, true), (-0.6, false)] {
+            let mut listed = places.clone();
+            listed[0][0] += by;
+            let reason = reason_among(|metres| metres, &places, &listed);
+            assert_eq!(reason, told.then_some(Reason::Anchor), "{by} m");
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Explanations that would make ranges and anchors agree: one thing changed at a time.
 
 use kestirim_health::Reason;
-use kestirim_uwb_ranging::{Observation, Solver};
+use kestirim_uwb_ranging::{Observation, Search, Solver};
 use nalgebra::Vector3;
 
 use crate::Finding;
@@ -23,6 +23,14 @@ const EXPLAINED_M: f64 = 0.35;
 /// The factor by which a change must reduce a residual that walls and people might cause as well: three anchors have
 /// only one range to spare, and noise alone reduces it by less.
 const CLEARLY: f64 = 6.0;
+/// The factor by which leaving out an anchor of many must reduce the residual if its ranges are shorter than the others allow.
+/// Sound recordings of eight anchors reach 1.3.
+const EXPLAINS_SHORT: f64 = 1.6;
+/// The residual from which on a range is too short, m, and the share of the moments in which it must be. An obstacle lengthens
+/// ranges, and the tracker takes those that are longer than others allow for obstructed: a single anchor whose ranges are too
+/// short would decide over all others.
+const SHORT_M: f64 = -0.3;
+const OFTEN: f64 = 0.25;
 /// The standard deviation of the bias common to all anchors, m.
 const COMMON_BIAS_M: f64 = 0.5;
 /// The residual by which a common excess may be worse than a height and still explain as well, m: radios have an excess
@@ -63,13 +71,10 @@ impl Tried<'_> {
         anchors: &[Vector3<f64>],
         height: Option<f64>,
     ) -> Option<f64> {
-        let each = self.moments.iter().filter_map(|moment| {
-            let observations = change(moment).into_iter().filter_map(|(anchor, range)| {
-                Some(Observation { anchor: *anchors.get(anchor)?, range, variance: 1.0 })
-            });
-            let observations: Vec<_> = observations.collect();
-            left_over(&observations, height)
-        });
+        let each = self
+            .moments
+            .iter()
+            .filter_map(|moment| Some(fit(&observations(&change(moment), anchors), height)?.left));
         let each: Vec<f64> = each.collect();
         (each.len() >= FEWEST).then(|| median(&each))
     }
@@ -158,6 +163,36 @@ impl Tried<'_> {
         None
     }
 
+    /// The anchor of `heard` whose ranges are too short for the others, if it is one of many, and how the others agree.
+    pub(super) fn too_short(
+        &self,
+        left: f64,
+        heard: usize,
+        names: &[String],
+    ) -> Option<(Reason, String)> {
+        let (with, anchor) = self.without_one().filter(|_| heard >= MANY)?;
+        if with * EXPLAINS_SHORT > left {
+            return None;
+        }
+        let excess = self.moments.iter().filter_map(|moment| {
+            let (_, range) = moment.iter().find(|(it, _)| *it == anchor)?;
+            let others: Moment = moment.iter().copied().filter(|(it, _)| *it != anchor).collect();
+            let fitted = fit(&observations(&others, self.anchors), self.height)?;
+            Some(range - (fitted.place - self.anchors.get(anchor)?).norm() - fitted.common)
+        });
+        let excess: Vec<f64> = excess.collect();
+        let short = excess.iter().filter(|excess| **excess < SHORT_M).count();
+        (short as f64 > OFTEN * excess.len() as f64).then(|| {
+            let agree = agree(with);
+            let others = agree.trim_start_matches("they ");
+            let name = &names[anchor];
+            let remedy = format!(
+                "ranges to {name} are too short for the others, which {others}: look where it stands"
+            );
+            (Reason::Anchor, remedy)
+        })
+    }
+
     /// The finding about ranges for which least squares find no place at all: ranges in millimetres or centimetres are
     /// so long.
     pub(super) fn too_far(&self) -> Option<Finding> {
@@ -241,8 +276,24 @@ fn agree(with: f64) -> String {
     format!("they would agree within {with:.2} m")
 }
 
-/// The residual of least squares per redundant range, m; `None` without redundancy.
-fn left_over(observations: &[Observation<f64>], height: Option<f64>) -> Option<f64> {
+fn observations(moment: &Moment, anchors: &[Vector3<f64>]) -> Vec<Observation<f64>> {
+    let observation = |&(anchor, range): &(usize, f64)| {
+        Some(Observation { anchor: *anchors.get(anchor)?, range, variance: 1.0 })
+    };
+    moment.iter().filter_map(observation).collect()
+}
+
+/// Least squares over the ranges of a moment.
+struct Fit {
+    /// The residual per redundant range, m.
+    left: f64,
+    place: Vector3<f64>,
+    /// The excess that all ranges have in common, m.
+    common: f64,
+}
+
+/// The fit to a moment; `None` without redundancy.
+fn fit(observations: &[Observation<f64>], height: Option<f64>) -> Option<Fit> {
     let count = observations.len();
     let unknown = if height.is_some() { 2 } else { 3 };
     let with_bias = count > unknown + 1;
@@ -251,9 +302,18 @@ fn left_over(observations: &[Observation<f64>], height: Option<f64>) -> Option<f
         common_bias: with_bias.then_some(COMMON_BIAS_M),
         ..Solver::new(height.unwrap_or_default())
     };
-    let cost = match height {
-        Some(_) => solver.solve::<2>(observations, None).ok()?.cost,
-        None => solver.solve::<3>(observations, None).ok()?.cost,
+    // To a centimetre: only the sizes of residuals count.
+    let (cost, place, common) = match height {
+        Some(height) => {
+            let mut search = Search::<f64, 2>::new(None);
+            let fix = search.advance(&solver, observations, usize::MAX).ok()??;
+            (fix.cost, fix.position.push(height), fix.common_bias)
+        }
+        None => {
+            let mut search = Search::<f64, 3>::new(None);
+            let fix = search.advance(&solver, observations, usize::MAX).ok()??;
+            (fix.cost, fix.position, fix.common_bias)
+        }
     };
-    Some((cost / spare as f64).sqrt())
+    Some(Fit { left: (cost / spare as f64).sqrt(), place, common })
 }
