@@ -202,11 +202,6 @@ pub struct Column {
 
 impl Column {
     const NONE: Self = Self { at: 0, scale: 1.0, has_unit: false };
-
-    /// Whether the header or an option states the unit.
-    pub const fn has_unit(&self) -> bool {
-        self.has_unit
-    }
 }
 
 /// The header of a table.

@@ -44,7 +44,7 @@ pub(crate) use mimu::MIMU;
 pub(crate) use number_message::ALTITUDE;
 pub(crate) use phyphox::PHYPHOX;
 pub(crate) use px4::PX4;
-pub(crate) use range_message::Label;
+pub(crate) use range_message::{Heard, Label};
 pub(crate) use range_topics::RangeTopics;
 pub(crate) use rosbag::ROS1;
 pub(crate) use sensor_logger::SENSOR_LOGGER;

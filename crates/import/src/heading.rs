@@ -82,6 +82,7 @@ const KNOWN: &[Known] = &[
             "tagid",
         ],
     ),
+    named_only("tag", &["tag", "tagid", "tid"]),
     of(
         Quantity::Speed,
         "v_left",

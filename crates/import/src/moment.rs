@@ -28,13 +28,13 @@ pub(crate) struct Days {
 }
 
 impl Days {
-    /// The time of a moment, s since 1970 or since the midnight before the first moment. Of all days, a time of day belongs to that
-    /// on which it is nearest to the time before.
+    /// The time of a moment, s since 1970 or since the midnight before the first moment. Of all days from the first one on, a time
+    /// of day belongs to that on which it is nearest to the time before.
     pub(crate) fn seconds(&mut self, moment: Moment) -> f64 {
         const DAY: f64 = 86_400.0;
         let seconds = moment.microseconds() * 1e-6;
         let Moment::OfDay(_) = moment else { return seconds };
-        let days = self.last.map_or(0.0, |last| ((last - seconds) / DAY).round());
+        let days = self.last.map_or(0.0, |last| ((last - seconds) / DAY).round().max(0.0));
         *self.last.insert(seconds + days * DAY)
     }
 }

@@ -120,9 +120,9 @@ impl<T: Scalar, const N: usize> Poses<T, N> {
         let unknowns = T::from_binary(i32::from(model.unknowns()), 0);
         let sigma = noise(given / gravity, left, count, unknowns);
         let mut sigmas = gains.map(|gain| gain * sigma);
-        for (index, &is_known) in active.iter().enumerate() {
+        for (index, &is_estimated) in active.iter().enumerate() {
             let moved = normal.shift(&inverse, index);
-            for (sigma, moved) in sigmas.iter_mut().zip(moved).filter(|_| !is_known) {
+            for (sigma, moved) in sigmas.iter_mut().zip(moved).filter(|_| !is_estimated) {
                 *sigma = sigma.hypot(moved * T::from_f64(MISALIGNMENT));
             }
         }

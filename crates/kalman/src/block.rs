@@ -113,8 +113,10 @@ fn decorrelated<T: Scalar, const M: usize, const N: usize>(
             innovation.as_array_mut()[row] -= taken;
         }
     }
-    // NaN passes every comparison above.
-    if T::all_finite(&variances) {
+    // NaN passes every comparison above, and fixed point may have reached a rail.
+    let are_finite = T::SPREADS
+        || T::all_finite(innovation.as_array()) && T::all_finite(rows.as_columns().as_flattened());
+    if T::all_finite(&variances) && are_finite {
         Ok((rows, innovation, variances))
     } else {
         Err(Error::NotFinite)

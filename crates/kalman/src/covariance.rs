@@ -310,24 +310,26 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         }
         for index in 0..N {
             let variance = &mut self.lower.data.0[index][index];
-            *variance += variance.max(g[index].abs()).rounding(Self::ROUNDINGS);
+            *variance += absorbed::<T, N>(*variance, g[index]);
         }
     }
 
-    /// Refuses an update in fixed point of variances on a rail, from which it would move them as if they were known, or after
-    /// which one would be negative. (Those of floats stay infinite, and positive.)
+    /// Refuses an update in fixed point if the gain or a variance is on a rail, which the update would leave, or if a variance would
+    /// become negative. Floats need none of this: what is not finite stays so.
     #[inline(always)]
     pub(crate) fn can_lose(&self, gain: &[T; N], g: &[T; N]) -> Result<(), Error> {
         if T::SPREADS {
             return Ok(());
+        }
+        if !T::all_finite(gain) {
+            return Err(Error::NotFinite);
         }
         for index in 0..N {
             let variance = self.lower.data.0[index][index];
             if !variance.is_finite() {
                 return Err(Error::NotFinite);
             }
-            let absorbed = variance.max(g[index].abs()).rounding(Self::ROUNDINGS);
-            if variance + absorbed < gain[index] * g[index] {
+            if variance + absorbed::<T, N>(variance, g[index]) < gain[index] * g[index] {
                 return Err(Error::NotPositive);
             }
         }
@@ -362,8 +364,17 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     }
 }
 
-/// An entry of k·gᵀ, which is symmetric. In fixed point the rounding of the gain counts as often as the other factor is large:
-/// the smaller one is taken.
+/// What rounding may take from a variance of fixed point in an update with this entry of g.
+#[inline(always)]
+fn absorbed<T: Scalar, const N: usize>(variance: T, g: T) -> T {
+    variance.rounding(Covariance::<T, N>::ROUNDINGS).max(g.abs().rounding(ROUNDINGS_OF_GAIN))
+}
+
+/// Roundings of the gain to absorb in fixed point. Errors of many entries are as often positive as negative.
+const ROUNDINGS_OF_GAIN: u16 = 4;
+
+/// An entry of the symmetric k·gᵀ: gain\[row\]·g\[column\] or gain\[column\]·g\[row\]. In fixed point, half a unit of the gain is
+/// multiplied by g: the smaller g gives the smaller error.
 #[inline(always)]
 fn taken<T: Scalar, const N: usize>(gain: &[T; N], g: &[T; N], row: usize, column: usize) -> T {
     if T::SPREADS || g[column].abs() <= g[row].abs() {

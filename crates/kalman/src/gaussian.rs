@@ -301,7 +301,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
             gain[i] = weights.by_variance(cross[i]);
             mean[i] += gain[i] * weights.innovation;
         }
-        // A gain that is not finite makes the mean so as well, even where the innovation is zero.
+        // A float's gain that is not finite makes the mean so as well, even where the innovation is zero.
         if !T::all_finite(&mean) {
             return Err(Error::NotFinite);
         }

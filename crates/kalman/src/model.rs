@@ -70,11 +70,11 @@ impl<T: Scalar, const N: usize, const K: usize> Observation<T, N> for LinearObse
 
     #[inline]
     fn linearise(&self, mean: &SVector<T, N>) -> Result<(T, SparseRow<T, K>), Error> {
+        let expected = self.row.dot(mean).ok_or(Error::IndexOutOfRange)?;
         // In fixed point the difference may leave the rail.
-        if !(T::SPREADS || self.measured.is_finite()) {
+        if !(T::SPREADS || self.measured.is_finite() && expected.is_finite()) {
             return Err(Error::NotFinite);
         }
-        let expected = self.row.dot(mean).ok_or(Error::IndexOutOfRange)?;
         Ok((self.measured - expected, self.row))
     }
 }

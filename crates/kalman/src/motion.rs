@@ -32,19 +32,20 @@ impl<T: Scalar, const D: usize> ConstantVelocity<T, D> {
     /// (g, d, Q), with Q of one axis as variance of position, covariance, variance of velocity.
     #[inline]
     fn coefficients(&self) -> (T, T, [T; 3]) {
-        let h = self.interval;
-        // Fixed point would leave its rail in a product with a number below one: such factors come first.
-        let gained = self.acceleration_density * h;
+        let (h, q) = (self.interval, self.acceleration_density);
         let third = T::from_f64(1.0 / 3.0);
+        // Fixed point would leave its rail in a product with a number below one: such factors come first.
         let Some(tau) = self.decay_time else {
+            // On a rail, the variance of the velocity shows it.
+            let gained = q * h;
             return (h, T::ONE, [gained * third * h * h, gained * T::HALF * h, gained]);
         };
         let divisor = (tau + h).divisor();
         let decay = tau.divided_by(divisor);
         let reach = h * decay;
         // Both tend to those of white noise for h ≪ τ and to those of the settled process for h ≫ τ.
-        let velocity = gained * T::HALF * decay * (T::ONE + decay);
-        let position = gained * third * reach * reach * (T::ONE + T::TWO * h.divided_by(divisor));
+        let velocity = q * T::HALF * reach * (T::ONE + decay);
+        let position = q * third * reach * reach * h * (T::ONE + T::TWO * h.divided_by(divisor));
         (reach, decay, [position, velocity * T::HALF * reach, velocity])
     }
 }
@@ -56,12 +57,12 @@ impl<T: Scalar, const D: usize, const N: usize> Process<T, N> for ConstantVeloci
         let (reach, decay, [position, cross, velocity]) = self.coefficients();
         let mean = estimate.mean.as_array_mut();
         for axis in 0..D {
-            mean[axis] += reach * mean[D + axis];
+            mean[axis] = moved(mean[axis], reach * mean[D + axis]);
             mean[D + axis] *= decay;
             if let Some(acceleration) = &self.acceleration {
                 let gained = self.interval * acceleration[axis];
-                mean[axis] += gained * T::HALF * self.interval;
-                mean[D + axis] += gained;
+                mean[axis] = moved(mean[axis], gained * T::HALF * self.interval);
+                mean[D + axis] = moved(mean[D + axis], gained);
             }
         }
         let covariance = &mut estimate.covariance;
@@ -75,5 +76,17 @@ impl<T: Scalar, const D: usize, const N: usize> Process<T, N> for ConstantVeloci
             *covariance.entry(axis, D + axis) += cross;
             *covariance.entry(D + axis, D + axis) += velocity;
         }
+    }
+}
+
+/// The sum of a state and its change; what is on a rail of fixed point stays there.
+#[inline(always)]
+fn moved<T: Scalar>(state: T, change: T) -> T {
+    if T::SPREADS || state.is_finite() && change.is_finite() {
+        state + change
+    } else if state.is_finite() {
+        change
+    } else {
+        state
     }
 }

@@ -83,8 +83,8 @@ def test_what_is_refused_changes_nothing() -> None:
     for change, sentence in (
         ({"P": np.eye(3)}, r"P: expected an array of shape \(2, 2\), found \(3, 3\)"),
         ({"R": [1.0, 2.0]}, r"R: expected an array of shape \(1, 1\), found \(2, 2\)"),
-        ({"H": [[np.nan, 0.0]]}, "H: expected numbers, found nan at index 0"),
-        ({"Q": [[0.0, 0.0], [0.0, np.inf]]}, "Q: expected numbers, found inf at index 3"),
+        ({"H": [[np.nan, 0.0]]}, "H: expected finite numbers, found nan"),
+        ({"Q": [[0.0, 0.0], [0.0, np.inf]]}, "Q: expected finite numbers, found inf"),
     ):
         with pytest.raises(kestirim.KestirimError, match=sentence):
             kestirim.KalmanFilter(**{**of, **change})

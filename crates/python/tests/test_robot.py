@@ -153,10 +153,9 @@ def test_refusals() -> None:
         ((anchors, t, anchor, distance), {"height": 1.0, "dim": 4}, "dim: expected 2 or 3, found 4"),
         ((anchors, t, anchor, distance), {"height": None}, "the ranges do not tell the tag's height"),
         ((np.empty((0, 3)), t, anchor, distance), {"height": 1.0}, "anchors: expected at least one"),
-        ((anchors, t, anchor, distance), {"heights": ([1.0, 0.0], [1.0, 1.0])}, "heights, times: expected at least one, in order"),
-        ((anchors, t, anchor, distance), {"heights": ([], [])}, "heights, times: expected at least one, in order"),
-        ((anchors, t, anchor, distance), {"heights": ([0.0, np.nan], [1.0, 1.0])}, "heights, times: expected numbers, found nan at index 1"),
-        ((anchors, t, anchor, distance), {"height": 1.0, "imu": ([np.nan], np.zeros((1, 3)))}, "imu, times: expected numbers"),
+        ((anchors, t, anchor, distance), {"heights": ([], [])}, "heights, times: expected at least one"),
+        ((anchors, t, anchor, distance), {"heights": ([0.0, np.nan], [1.0, 1.0])}, "heights, times: expected finite numbers, found nan"),
+        ((anchors, t, anchor, distance), {"height": 1.0, "imu": ([np.nan], np.zeros((1, 3)))}, "imu, times: expected finite numbers"),
         ((anchors, t, anchor, distance), {"height": 1.0, "biases": [0.1]}, r"biases: expected an array of shape \(3,\), found \(1,\)"),
     ):
         with pytest.raises(kestirim.KestirimError, match=sentence):

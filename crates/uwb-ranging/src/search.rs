@@ -123,7 +123,13 @@ impl<T: Scalar, const D: usize> Search<T, D> {
                     }
                 }
                 Ok(Step::Settled(fix)) => self.settle(solver, fix),
-                Err(error) => self.failure = error,
+                Err(error) => {
+                    self.failure = error;
+                    // Before the first of the other starts it is the caller's that failed.
+                    if self.next == 0 {
+                        self.prefer_none();
+                    }
+                }
             }
             self.descent = None;
             let is_good_enough = |best: &Found<T, D>| best.is_good_enough(observations.len());
@@ -172,6 +178,7 @@ impl<T: Scalar, const D: usize> Search<T, D> {
         if inside != best.inside {
             if inside {
                 *best = Found { inside, fix };
+                self.prefer_none();
             }
             return;
         }
@@ -183,10 +190,21 @@ impl<T: Scalar, const D: usize> Search<T, D> {
         let alike = (fix.cost - best.fix.cost).abs() < T::TWO + T::TWO;
         let ambiguous = fix.ambiguous || best.fix.ambiguous || (apart && alike);
         let is_kept = apart && alike && is_near_start;
-        if fix.cost < best.fix.cost && !is_kept {
+        let is_replaced = fix.cost < best.fix.cost && !is_kept;
+        if is_replaced {
             best.fix = fix;
         }
         best.fix.ambiguous = ambiguous;
+        if is_replaced && apart {
+            self.prefer_none();
+        }
+    }
+
+    /// Prefers no minimum any more: that of the caller's start is not the best, or there is none.
+    fn prefer_none(&mut self) {
+        if self.aim == Aim::BestNear {
+            self.aim = Aim::Best;
+        }
     }
 }
 

@@ -94,6 +94,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
     /// [`Error::NoSuchAnchor`], also if both anchors are the same; [`Error::NotFinite`], [`Error::ImplausibleRange`]
     /// beyond 200 m, [`Error::Duplicate`], [`Error::OutOfOrder`] or [`Error::Estimate`]; the tracker is unchanged.
     pub fn difference(&mut self, sample: &DifferenceSample<T>) -> Result<Report<T>, Error> {
+        let sample = &self.turned(sample);
         let difference = self.admit(sample)?;
         let time_us = sample.time_us.max(self.tracker.time_us);
         let before = (self.tracker.timed(), self.tracker.is_located());
@@ -158,6 +159,19 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> DifferenceTracke
             core::array::from_fn::<T, D, _>(|axis| direction[axis] - mean[axis])
         });
         dilution_of_precision(centred).ok()
+    }
+
+    /// The sample, turned round if its second anchor is the one that was heard at this time: some receivers name the reference last.
+    fn turned(&self, sample: &DifferenceSample<T>) -> DifferenceSample<T> {
+        let DifferenceSample { time_us, anchors: [first, second], difference } = *sample;
+        let links = &self.tracker.links;
+        let is_heard =
+            |anchor: usize| links.get(anchor).is_some_and(|link| link.is_heard_at(time_us));
+        if is_heard(second) && !is_heard(first) {
+            DifferenceSample { time_us, anchors: [second, first], difference: -difference }
+        } else {
+            *sample
+        }
     }
 
     /// The difference without both anchors' biases, if it is plausible and new.

@@ -92,7 +92,7 @@ impl<T: Scalar, const A: usize> EpochSolver<T, A> {
     }
 
     /// The position (m) from the ranges of at most one second before `time_us`, or of two rounds of the anchors if
-    /// those take longer. Least squares also searches near `start`, if it is given.
+    /// those take longer. Of two places that fit alike, least squares takes the one near `start`, if it is given.
     ///
     /// # Errors
     /// [`kestirim_uwb_ranging::Error`] if these ranges do not determine a position.

@@ -66,8 +66,8 @@ pub struct InertialSample<T: Scalar, const D: usize> {
     /// distinguishes standing from moving.
     pub acceleration: SVector<T, 3>,
     /// The acceleration without gravity in the room frame, m/s², if it is to drive the prediction (the paper's eq. 9).
-    /// For a slow robot that does more harm than good. It drives it over a quarter of a second at most: in a longer gap of the
-    /// IMU nothing is known of it.
+    /// For a slow robot that does more harm than good. After a gap of more than a quarter of a second it is not used: for most of
+    /// the gap the acceleration is not known.
     pub push: Option<[T; D]>,
 }
 

@@ -23,7 +23,7 @@ const TEXTS: [(&str, &str, &str); 4] = [
     (
         "topic",
         "NAME",
-        "Which of several sensors in the file: a topic of ROS or MCAP, the number of an ArduPilot, PX4 or OpenShoe sensor, a transmitter in the column user of a flight, a tag among ranges [default: the only one, or 0]",
+        "Which of several sensors in the file: a topic of ROS or MCAP, the number of an ArduPilot, PX4 or OpenShoe sensor, a transmitter in the column user of a flight, a tag of ranges [default: the only one; of sensors with numbers 0]",
     ),
 ];
 /// The name of the only option without a text.

@@ -51,17 +51,17 @@ impl<'o> RangeTopics<'o> {
         &self.catalogue.topics[place].name
     }
 
-    /// The wanted topics: the one that is `said` or those below it, else all that hold `sensor_msgs/Range`, else
+    /// The wanted topics: the one that an option names or those below it, else all that hold `sensor_msgs/Range`, else
     /// the only other one.
     ///
     /// # Errors
     /// If there is none, or several and no option chooses.
-    pub(crate) fn wanted(&self, said: Option<&str>) -> Result<Vec<usize>, Error> {
+    pub(crate) fn wanted(&self) -> Result<Vec<usize>, Error> {
         let bare = |name: &str| name.trim().trim_matches('/').to_owned();
         let topics = &self.catalogue.topics;
         let heard: Vec<_> = (0..topics.len()).filter(|&it| topics[it].is_heard).collect();
         let names = |places: &[usize]| listed(places.iter().map(|&it| self.name(it)));
-        if let Some(said) = said {
+        if let Some(said) = &self.options.topic {
             let (own, below) = (bare(said), bare(said) + "/");
             let is_said = |place: &usize| {
                 let name = bare(self.name(*place));
@@ -69,7 +69,7 @@ impl<'o> RangeTopics<'o> {
             };
             let found: Vec<_> = heard.iter().copied().filter(is_said).collect();
             if found.is_empty() {
-                let (said, found) = (listed([said]), names(&heard));
+                let (said, found) = (listed([said.as_str()]), names(&heard));
                 let problem =
                     format!("expected ranges on topic {said}, found them on {found} (--topic)");
                 return Err(Error::options(problem));

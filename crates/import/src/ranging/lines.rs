@@ -65,13 +65,10 @@ pub(super) fn read(
     }
     damage.accept(messages.len() + damage.count(), options.strict)?;
     let mut tags = Tags::default();
-    for tag in messages.iter().filter_map(|(_, message)| message.tag.as_deref()) {
-        tags.note(tag);
-    }
-    if let Some(wanted) = tags.wanted(options)? {
-        messages
-            .retain(|(_, message)| message.tag.as_deref().is_none_or(|tag| tag.trim() == wanted));
-    }
+    let tag_of = |message: &Message| message.tag.clone().unwrap_or_default();
+    messages.iter().for_each(|(_, message)| tags.note(&tag_of(message)));
+    let wanted = tags.wanted(options)?;
+    messages.retain(|(_, message)| Tags::reads(wanted, &tag_of(message)));
     let (times, clock) = times(&messages, options)?;
     let mut found = Found::default();
     for ((_, message), time_us) in messages.iter().zip(times) {

@@ -42,7 +42,7 @@ pub(super) fn read(
 ) -> Result<Option<(Found, String, Damage)>, Error> {
     let found = NamedTable::find(text, options, |heading| {
         let time = heading.find("t").ok().flatten();
-        let tag = heading.find("user").ok().flatten().map(|tag| tag.column);
+        let tag = heading.find("tag").ok().flatten().map(|tag| tag.column);
         time.zip(form(heading)).map(|(time, form)| (time, tag, form)).ok_or(())
     });
     let Some(Ok((table, (time, tag, form)))) = found else { return Ok(None) };
@@ -69,9 +69,8 @@ pub(super) fn read(
         rows.push((tag, seconds, said));
     }
     damage.accept(total, options.strict)?;
-    if let Some(wanted) = tags.wanted(options)? {
-        rows.retain(|(tag, ..)| tag.trim() == wanted);
-    }
+    let wanted = tags.wanted(options)?;
+    rows.retain(|(tag, ..)| Tags::reads(wanted, tag));
     let (unit, from) = match &time.unit {
         _ if are_moments => (Unit::new(1.0, "s"), "from the data"),
         Some(unit) => (unit.clone(), "header"),

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::labels::place;
 use super::{Found, Tags};
-use crate::containers::{self, Label, RangeTopics};
+use crate::containers::{self, Heard, Label, RangeTopics};
 use crate::damage::Damage;
 use crate::error::{Error, listed};
 use crate::options::Options;
@@ -19,10 +19,14 @@ pub(super) fn read(
     let Some((format, topics)) = containers::ranges(bytes, options)? else { return Ok(None) };
     options.refuse_beside(&["range", "anchor"])?;
     // An option may name a tag in place of a topic.
-    let is_tag =
-        |said: &&str| topics.entries.iter().any(|it| it.heard.tag.as_deref() == Some(said));
-    let chosen = options.topic.as_deref().filter(is_tag);
-    let wanted = topics.wanted(options.topic.as_deref().filter(|_| chosen.is_none()))?;
+    let is_chosen = |heard: &Heard| {
+        let same = |(tag, said): (&String, &String)| tag.eq_ignore_ascii_case(said.trim());
+        heard.tag.as_ref().zip(options.topic.as_ref()).is_some_and(same)
+    };
+    let of_tag: BTreeSet<usize> =
+        topics.entries.iter().filter(|it| is_chosen(&it.heard)).map(|it| it.topic).collect();
+    let is_tag = !of_tag.is_empty();
+    let wanted = if is_tag { of_tag.into_iter().collect() } else { topics.wanted()? };
     let scales = wanted.iter().map(|&it| topics.scale(it)).collect::<Result<Vec<_>, _>>()?;
     let mut told: Vec<_> = scales.iter().map(|(_, told)| told.clone()).collect();
     told.dedup();
@@ -30,13 +34,11 @@ pub(super) fn read(
     let entries = topics.entries.iter().filter_map(|it| Some((is_wanted(&it.topic)?, it)));
     let mut entries: Vec<_> = entries.collect();
     let mut tags = Tags::default();
-    for tag in entries.iter().filter_map(|(_, it)| it.heard.tag.as_deref()) {
-        tags.note(tag);
-    }
-    let choice = Options { topic: chosen.map(str::to_owned), ..Options::default() };
-    if let Some(wanted) = tags.wanted(&choice)? {
-        entries.retain(|(_, it)| it.heard.tag.as_deref().is_none_or(|tag| tag.trim() == wanted));
-    }
+    let tag_of = |heard: &Heard| heard.tag.clone().unwrap_or_default();
+    entries.iter().for_each(|(_, it)| tags.note(&tag_of(&it.heard)));
+    let topic = options.topic.clone().filter(|_| is_tag);
+    let chosen = tags.wanted(&Options { topic, ..Options::default() })?;
+    entries.retain(|(_, it)| Tags::reads(chosen, &tag_of(&it.heard)));
     let has_stamps = entries.iter().any(|(_, it)| it.stamp.is_some_and(|stamp| stamp != 0.0));
     let by_topic = names_by_topic(&topics, &wanted, anchors)?;
     let mut found = Found::default();

@@ -43,11 +43,11 @@ pub(super) fn read(
         let ranges = columns(heading, anchors, options);
         let is_wide = ranges.iter().filter(|it| it.is_listed).count() >= FEWEST
             && !heading.names().iter().any(|name| name == "anchor");
-        let tag = heading.find("user").ok().flatten().map(|tag| tag.column);
+        let tag = heading.find("tag").ok().flatten().map(|tag| tag.column);
         time.filter(|_| is_wide).map(|time| (time, tag, ranges)).ok_or(())
     });
     let Some(Ok((table, (time, tag, columns)))) = found else { return Ok(None) };
-    one_each(&table.heading, &columns)?;
+    one_each(&table.heading, &columns, anchors)?;
     let mut damage = Damage { end_may_be_cut: !text.ends_with_line_break(), ..Damage::default() };
     let (mut rows, mut total, mut are_moments) = (Vec::new(), 0, false);
     let mut tags = Tags::default();
@@ -74,9 +74,8 @@ pub(super) fn read(
         rows.push((tag, seconds, columns.iter().map(range).collect::<Vec<_>>()));
     }
     damage.accept(total, options.strict)?;
-    if let Some(wanted) = tags.wanted(options)? {
-        rows.retain(|(tag, ..)| tag.trim() == wanted);
-    }
+    let wanted = tags.wanted(options)?;
+    rows.retain(|(tag, ..)| Tags::reads(wanted, tag));
     let (unit, from) = match &time.unit {
         _ if are_moments => (Unit::new(1.0, "s"), "from the data"),
         Some(unit) => (unit.clone(), "header"),
@@ -121,9 +120,13 @@ fn columns(heading: &Heading<'_>, anchors: &[String], options: &Options) -> Vec<
 }
 
 /// Refuses two columns of one anchor.
-fn one_each(heading: &Heading<'_>, columns: &[Ranges]) -> Result<(), Error> {
+fn one_each(heading: &Heading<'_>, columns: &[Ranges], anchors: &[String]) -> Result<(), Error> {
     for (place, column) in columns.iter().enumerate() {
-        if let Some(other) = columns[..place].iter().find(|it| it.label == column.label) {
+        let own = self::place(&column.label, anchors);
+        let is_same = |it: &&Ranges| {
+            it.label == column.label || own.is_some() && self::place(&it.label, anchors) == own
+        };
+        if let Some(other) = columns[..place].iter().find(is_same) {
             let [one, other] = [other, column].map(|it| quoted(&heading.names()[it.at]));
             let label = quoted(&column.label);
             return Err(Error::line(

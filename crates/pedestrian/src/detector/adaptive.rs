@@ -5,8 +5,8 @@ use kestirim_scalar::Scalar;
 ///
 /// Every stride has a stance, so the smallest T of the last 1.4 s belongs to one, for any walker: the foot stands where
 /// T < max(T₀, 2·min T), with a smaller T₀ for slow walkers. If no stance is found for a while, the walker has begun to
-/// run or the minimum was that of a standstill, and the bound grows with the time since. For the first 1.4 s, and after a gap as
-/// long, only T₀ counts: the smallest T so far may be in a swing.
+/// run or the minimum was that of a standstill, and the bound grows with the time since. For the first 1.4 s, and after a gap of
+/// 0.7 s, only T₀ counts: the smallest T so far may be in a swing.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -93,7 +93,11 @@ pub(crate) struct RecentMinimum<T> {
         serde(deserialize_with = "kestirim_snapshot::arrays::count::<_, { CAPACITY - 1 }>")
     )]
     memory: usize,
-    /// Bins since the first value, or since a gap of longer than all bins; at most `memory`.
+    /// Bins since the first value, or since a gap of half as many; at most `memory`.
+    #[cfg_attr(
+        feature = "serde",
+        serde(deserialize_with = "kestirim_snapshot::arrays::count::<_, { CAPACITY - 1 }>")
+    )]
     passed: usize,
 }
 
@@ -143,20 +147,23 @@ impl<T: Scalar> RecentMinimum<T> {
     #[inline(never)]
     fn next_bin(&mut self, mut begun_us: u32, time_us: u32) {
         // A long gap empties every bin, and no more than these need to be passed.
-        for _ in 0..CAPACITY {
+        let mut skipped = 0;
+        for bin in 0..CAPACITY {
             self.newest = (self.newest + 1) % CAPACITY;
             self.bins[self.newest] = T::MAX;
             self.passed = (self.passed + 1).min(self.memory);
             begun_us = begun_us.wrapping_add(Self::BIN_US);
+            skipped = bin;
             if time_us.wrapping_sub(begun_us) < Self::BIN_US {
                 break;
             }
         }
-        let inside = time_us.wrapping_sub(begun_us) < Self::BIN_US;
-        if !inside {
-            (begun_us, self.passed) = (time_us, 0);
+        // What half of the bins do not tell is not known.
+        if 2 * skipped >= self.memory {
+            self.passed = 0;
         }
-        self.begun_us = Some(begun_us);
+        let inside = time_us.wrapping_sub(begun_us) < Self::BIN_US;
+        self.begun_us = Some(if inside { begun_us } else { time_us });
         self.older = (1..=self.memory).fold(T::MAX, |smallest, age| {
             smallest.min(self.bins[self.newest.wrapping_sub(age) % CAPACITY])
         });
@@ -200,7 +207,7 @@ mod tests {
         // A long gap empties all bins, and the next bin begins at its end.
         let mut minimum = RecentMinimum::new(15);
         minimum.push(0, 1.0);
-        minimum.push(15 * BIN_US, 1.0);
+        (1..=15).for_each(|bin| assert_eq!(minimum.push(bin * BIN_US, 1.0), 1.0));
         assert!(minimum.is_full());
         assert_eq!(minimum.push(3_600_000_000, 5.0), 5.0);
         assert!(!minimum.is_full());
@@ -216,6 +223,23 @@ mod tests {
         for k in 0..60 {
             let rate = 1.0 + 0.1 * (k as f64 - 30.0).abs();
             assert!(!turning(&mut detector, k * 10_000, rate), "{k}");
+        }
+    }
+
+    #[test]
+    fn a_swing_after_a_gap_is_no_stance() {
+        for gap in 8..=20 {
+            let mut detector = Adaptive::default();
+            // Strides of a second, with a stance of a third.
+            for k in 0..300 {
+                let rate = if k % 100 < 33 { 0.0 } else { 4.0 };
+                turning(&mut detector, k * 10_000, rate);
+            }
+            let begin = 3_000_000 + gap * BIN_US;
+            for k in 0..30 {
+                let rate = 5.0 - 0.05 * f64::from(k);
+                assert!(!turning(&mut detector, begin + k * 10_000, rate), "{gap}: {k}");
+            }
         }
     }
 

@@ -31,6 +31,11 @@ fn words_are_those_of_what_was_found() {
     }
     assert_eq!(none.health(), kestirim_health::Health::GOOD);
     assert!(Health::<f64>::new().warnings().never_still);
+    for knows_bias in [false, true] {
+        let mut health = Health::<f64>::new();
+        health.standstill(1.0, knows_bias, SensorClass::Consumer);
+        assert_eq!(health.warnings().never_still, !knows_bias, "a person who sways shows no bias");
+    }
     assert!(found(Health::gap).gaps && found(Health::clipped).gyroscope_saturated);
 }
 

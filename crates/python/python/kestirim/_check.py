@@ -49,7 +49,7 @@ def finite(name: str, value: npt.ArrayLike, *shape: Union[int, str]) -> Floats:
     array = floats(name, value, *shape)
     wrong = np.flatnonzero(~np.isfinite(array))
     if wrong.size:
-        raise KestirimError(f"{name}: expected numbers, found {array.flat[wrong[0]]} at index {wrong[0]}")
+        raise KestirimError(f"{name}: expected finite numbers, found {array.flat[wrong[0]]}")
     return array
 
 

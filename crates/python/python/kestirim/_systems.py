@@ -405,8 +405,8 @@ def _over_time(
     if value is None:
         return None
     times = finite(f"{name}, times", value[0], "k")
-    if len(times) == 0 or np.any(np.diff(times) < 0):
-        raise KestirimError(f"{name}, times: expected at least one, in order")
+    if len(times) == 0:
+        raise KestirimError(f"{name}, times: expected at least one")
     return times, finite(name, value[1], len(times))
 
 

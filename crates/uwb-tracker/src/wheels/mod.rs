@@ -52,13 +52,12 @@ pub struct WheelTracker<T: Scalar, const A: usize> {
     start: Start<T, 2, A>,
 }
 
-/// Average of `too_short` above which both courses must be wrong, and the estimate begins anew. With few ranges, a course may lead
-/// off while its heading is not known, and far from the tag ranges are too long as well as too short; an obstacle only
-/// lengthens them.
+/// Average of `too_short` above which the course is wrong, and the estimate begins anew. With few ranges, both courses may lead off
+/// while the heading is hardly known. A wrong position makes some ranges seem too short; an obstacle never does.
 const TOO_SHORT: f64 = 4.0;
 /// Weight of a range in it, and the largest NIS that counts: one range that is wrong is not enough.
 const SHARE_OF_ONE: f64 = 0.2;
-const MOST_OF_ONE: f64 = 16.0;
+const MOST_OF_ONE: f64 = 12.0;
 /// Mean NIS of ranges above which the wheels are assumed to slip, or not to be this robot's; below it, their noise
 /// grows with it.
 const NIS_OF_SLIP: f64 = 4.0;
@@ -282,7 +281,11 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         }
         let most = if seen.innovation > T::ZERO { T::ONE } else { T::from_f64(MOST_OF_ONE) };
         self.too_short += (seen.nis.min(most) - self.too_short) * T::from_f64(SHARE_OF_ONE);
-        if self.too_short > T::from_f64(TOO_SHORT) {
+        if self.best() != best {
+            self.too_short = T::ONE;
+        }
+        // With two anchors it could not begin anew.
+        if self.heard > 2 && self.too_short > T::from_f64(TOO_SHORT) {
             self.courses = [None; 2];
         }
         Ok(Report { outcome, innovation: Some(seen) })

@@ -144,6 +144,27 @@ fn arrivals_before_a_new_clock_belong_to_none() {
 }
 
 #[test]
+fn a_batch_may_name_its_reference_last() {
+    let track = |is_last: bool| {
+        let mut tracker = listener::<f64>(0.0);
+        for k in 0..100 {
+            let of = |other: usize| {
+                let difference = distance(other, [3.0, 2.0]) - distance(0, [3.0, 2.0]);
+                if is_last { ([other, 0], -difference) } else { ([0, other], difference) }
+            };
+            for (anchors, difference) in [1, 2, 3, 4].map(of) {
+                let sample = DifferenceSample { time_us: 100_000 * k, anchors, difference };
+                tracker.difference(&sample).unwrap();
+            }
+        }
+        tracker.position().unwrap()
+    };
+    let (first, last) = (track(false), track(true));
+    assert!((first[0] - 3.0).hypot(first[1] - 2.0) < 0.05, "{first}");
+    assert!((last[0] - 3.0).hypot(last[1] - 2.0) < 0.05, "{last}");
+}
+
+#[test]
 fn a_repeated_batch_counts_once() {
     let mut tracker = listener::<f64>(0.0);
     let batch = [1, 2, 3].map(|other| DifferenceSample {

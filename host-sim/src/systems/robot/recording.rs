@@ -2,6 +2,7 @@
 
 pub mod anchors;
 pub mod calibration;
+mod days;
 pub mod motion;
 pub mod points;
 pub mod ranges;
@@ -169,7 +170,7 @@ impl Recording {
         self.tell("ranges", &found);
         let truth = files.one("truth").map(|path| points::read_course(path, ["x", "y"]));
         let height = files.one("height").map(|path| points::read_course(path, ["z"]));
-        let (truth, height) = (truth.transpose()?, height.transpose()?);
+        let (mut truth, height) = (truth.transpose()?, height.transpose()?);
         let (ranges, differences) = (log.rows, log.differences);
         let mut sensors = Sensors { ranges, differences, height, ..Sensors::default() };
         if let Some(path) = files.one("imu") {
@@ -185,6 +186,7 @@ impl Recording {
         if files.one("imu").is_some() && sensors.inertial.is_empty() {
             self.warn("the IMU has no columns ax,ay,az or lax,lay,laz: it is not used");
         }
+        days::align(&mut sensors, &mut truth);
         self.warn_of_left_out(log.unlisted, log.without);
         if let Some(order) = sensors.put_in_order() {
             self.warn(order);

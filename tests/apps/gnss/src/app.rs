@@ -96,7 +96,7 @@ where
             let position = GlobalPosition {
                 time_us,
                 position: solution.position.into(),
-                // One that the observations contradict has no meaning, nor has that of a position which nothing checks.
+                // The deviation of a position that the observations contradict, or do not check, has no meaning.
                 sigma: is_checked(solution.health)
                     .then(|| libm::sqrt(solution.covariance.trace() / 3.0) as f32),
             };
@@ -124,8 +124,8 @@ where
         let solution = self.filter.process(time, &site::receiver(), &sightings);
         match &solution {
             Ok(found) => {
-                for sighting in &sightings {
-                    if let Some(place) = self.solved.get_mut(usize::from(sighting.satellite)) {
+                for used in &found.satellites {
+                    if let Some(place) = self.solved.get_mut(usize::from(used.satellite)) {
                         *place = Some(time);
                     }
                 }

@@ -70,6 +70,19 @@ impl Room {
         self.ranges.rows.retain(|row| row[column] != name);
     }
 
+    /// Moves the second anchor by a metre away from the middle of all: its ranges are too short there.
+    fn push_out(&mut self) {
+        let count = self.anchors.rows.len();
+        let axes = ["x", "y"].map(|name| self.anchors.column(name));
+        let [dx, dy] = axes.map(|column| {
+            let all = (0..count).map(|row| self.anchors.number(row, column));
+            self.anchors.number(1, column) - all.sum::<f64>() / count as f64
+        });
+        let far = dx.hypot(dy);
+        self.anchors.map(&["x"], |row, x| if row == 1 { x + dx / far } else { x });
+        self.anchors.map(&["y"], |row, y| if row == 1 { y + dy / far } else { y });
+    }
+
     /// Keeps only the ranges of the last two anchors.
     fn keep_two(&mut self) {
         let (anchors, from) = (self.anchors.rows.len(), self.ranges.rows.len() / 3);
@@ -86,6 +99,7 @@ const FAULTS: &[Fault] = &[
     ("an anchor moved by 2 m", |it| {
         it.anchors.map(&["x"], |row, x| if row == 1 { x + 2.0 } else { x });
     }),
+    ("an anchor 1 m too far out", Room::push_out),
     ("an anchor moved by 0.5 m", |it| {
         it.anchors.map(&["y"], |row, y| if row == 0 { y + 0.5 } else { y });
     }),

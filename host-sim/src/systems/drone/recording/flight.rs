@@ -53,7 +53,6 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
     }
     let mut flight = Flight::new(Quantity::PathLoss);
     let mut users = Users::new(options.topic.as_deref());
-    let mut has_unit = false;
     let mut found = table::parse(
         path,
         &bytes,
@@ -61,7 +60,6 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
         columns,
         |&Columns { places, measured: [t, h, value], quantity, user, heading }, row| {
             flight.quantity = quantity;
-            has_unit = value.has_unit();
             let t = row.time_us(t)? as f64 * 1e-6;
             let place = places.read(row, &mut flight.origin)?;
             let height = row.number("h", h)?;
@@ -90,11 +88,12 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
     )?;
     found.import.extend(users.decide(path, &mut flight)?);
     let is_positive = |stop: &Stop| stop.loss < 0.0;
-    let all_are = !flight.stops.is_empty() && flight.stops.iter().all(is_positive);
-    if flight.quantity == Quantity::Level && !has_unit && all_are {
-        let problem = "expected levels that fall with the distance, such as -60 dB, found only positive ones: \
-                       --columns rssi_db=-NAME turns them round, --units rssi_db=dB takes them as they are";
-        return Err(Error::File { path: path.to_path_buf(), problem: problem.to_owned() });
+    if flight.quantity == Quantity::Level
+        && !flight.stops.is_empty()
+        && flight.stops.iter().all(is_positive)
+    {
+        let warning = "all levels are above 0 dB: if the column has them without their minus sign, --columns rssi_db=-NAME";
+        found.warnings.push(warning.to_owned());
     }
     Ok((flight, found))
 }

@@ -27,8 +27,10 @@ const POSE_NOISE: f64 = 0.01;
 const RATE_NOISE: f64 = 0.0005;
 /// The error of a turn apart from scale and misalignment, in rad: 0.2°.
 const TURN_NOISE: f64 = 0.003;
-/// The number of samples in a row with the largest rate of an axis that are cut off there.
+/// The smallest number of samples in a row at the end of a range.
 const ENOUGH: usize = 3;
+/// The smallest jump to the end of a range, in steps of the rate.
+const JUMP: f64 = 2.5;
 /// The smallest rate at which a gyroscope's range may end, in rad/s.
 const FAST: f64 = 1.0;
 /// The number of times that the turns are integrated: each pass leaves a hundredth of the error.
@@ -115,12 +117,13 @@ fn turned(
     accelerometer: &AccelerometerFit<f64>,
     start: Triad<f64>,
 ) -> (Option<GyroscopeFit<f64>>, usize, usize) {
-    let most = most(samples);
+    let rails = [0, 1, 2].map(|axis| Rails::of(samples, axis));
     let mut pairs: Vec<_> = stands.windows(2).collect();
     let all = pairs.len();
     pairs.retain(|pair| {
         let between = samples.get(pair[0].samples.end..pair[1].samples.start);
-        !is_clipped(between.unwrap_or_default(), most)
+        let between = between.unwrap_or_default();
+        rails.iter().all(|rails| !rails.cut(between))
     });
     let clipped = all - pairs.len();
     let mut triad = start;
@@ -141,21 +144,43 @@ fn turned(
     result
 }
 
-/// The largest rate of each axis.
-fn most(samples: &[Sample]) -> [f64; 3] {
-    let rates = samples.iter().map(|sample| sample.angular_rate);
-    rates.fold([0.0; 3], |most, rate| std::array::from_fn(|axis| most[axis].max(rate[axis].abs())))
+/// The rates of an axis at which its range may end.
+struct Rails {
+    axis: usize,
+    /// The smallest and the largest rate (rad/s).
+    ends: [f64; 2],
+    /// The smallest change of the rate from one sample to the next (rad/s): a step of the sensor, or of its printing.
+    step: f64,
 }
 
-/// Whether an axis stays at its largest rate: it turned faster than its range allows.
-fn is_clipped(turn: &[Sample], most: [f64; 3]) -> bool {
-    turn.windows(ENOUGH).any(|samples| {
-        (0..3).any(|axis| {
-            let end = most[axis].max(FAST);
-            let rates = || samples.iter().map(|sample| sample.angular_rate[axis]);
-            rates().all(|rate| rate >= end) || rates().all(|rate| rate <= -end)
+impl Rails {
+    fn of(samples: &[Sample], axis: usize) -> Self {
+        let rate = |sample: &Sample| sample.angular_rate[axis];
+        let most = samples.iter().map(rate).fold(f64::NEG_INFINITY, f64::max);
+        let least = samples.iter().map(rate).fold(f64::INFINITY, f64::min);
+        let changes = samples.windows(2).map(|pair| (rate(&pair[1]) - rate(&pair[0])).abs());
+        let step = changes.filter(|change| *change > 0.0).fold(f64::INFINITY, f64::min);
+        Self { axis, ends: [least, most], step }
+    }
+
+    /// Whether a turn was cut off at an end: the rate stays there for some samples, and comes there in a jump. (That of a slow
+    /// reversal stays at its largest value, too, but comes there step by step.)
+    fn cut(&self, turn: &[Sample]) -> bool {
+        let rates: Vec<f64> = turn.iter().map(|sample| sample.angular_rate[self.axis]).collect();
+        self.ends.iter().filter(|end| end.abs() > FAST).any(|end| {
+            let mut from = 0;
+            let mut runs = rates.chunk_by(|a, b| (a == end) == (b == end)).map(|run| {
+                from += run.len();
+                from - run.len()..from
+            });
+            runs.any(|run| {
+                let beside = [run.start.checked_sub(1), Some(run.end)];
+                let beside = beside.into_iter().flatten().filter_map(|place| rates.get(place));
+                let jump = beside.map(|rate| (rate - end).abs()).fold(0.0, f64::max);
+                rates.get(run.start) == Some(end) && run.len() >= ENOUGH && jump > JUMP * self.step
+            })
         })
-    })
+    }
 }
 
 /// Adds the turn between two stands, if all of it was recorded.

@@ -1,7 +1,7 @@
 //! Figures of the attitude of the foot.
 
 use kestirim_replay::pedestrian::{Moment, Trace};
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, UnitQuaternion};
 
 use super::{COLOURS, seconds};
 use crate::figure::{Colour, Figure, Mark, Series};
@@ -27,13 +27,7 @@ impl<'a> Foot<'a> {
 
     /// The rotation from the foot (x ahead, y to the left, z up) to the room at a sample.
     pub(super) fn attitude(&self, place: usize) -> Option<UnitQuaternion<f64>> {
-        let (moment, point) = (self.trace.moments.get(place)?, self.trace.walk.track.get(place)?);
-        let turned = attitude(moment) * self.mounted;
-        // A gradual correction of the path's heading also rotates the foot.
-        let Some(rate) = self.trace.walk.heading_rate else { return Some(turned) };
-        let begin_us = self.trace.walk.track.first()?.time_us;
-        let angle = -rate * (seconds(point.time_us) - seconds(begin_us));
-        Some(UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle) * turned)
+        Some(attitude(self.trace.moments.get(place)?) * self.mounted)
     }
 
     /// The roll, pitch and yaw of all samples (°); pitch is positive with the toes up. There is a gap where the yaw

@@ -85,23 +85,22 @@ pub fn read_moving(
         path,
         &bytes,
         &Log { what: "ranges", usual_step_s: Some(USUAL_STEP_S), options },
-        |header| Ok((header.require(["t", "anchor", "range"])?, header.find("user")?)),
+        |header| Ok((header.require(["t", "anchor", "range"])?, header.find("tag").ok().flatten())),
         |&([t, anchor, range], tag), row| {
             let time_us = row.time_us(t)?;
             let range = optional_range(row, range)?;
             log.add(time_us, labels.index(&row.text(anchor)), range);
             if let Some(tag) = tag {
-                let tag = row.text(tag).trim().to_owned();
+                let tag = row.text(tag).into_owned();
                 tags.note(&tag);
                 of_tag.push(tag);
             }
             Ok(())
         },
     )?;
-    if let Some(wanted) = tags.wanted(options).map_err(|error| table::refused(path, &error))? {
-        let mut of_tag = of_tag.iter();
-        log.rows.retain(|_| of_tag.next().is_none_or(|tag| tag == wanted));
-    }
+    let wanted = tags.wanted(options).map_err(|error| table::refused(path, &error))?;
+    let mut of_tag = of_tag.iter();
+    log.rows.retain(|_| of_tag.next().is_none_or(|tag| Tags::reads(wanted, tag)));
     log.resolve(&places(&labels, path, anchors)?);
     Ok((log, found))
 }

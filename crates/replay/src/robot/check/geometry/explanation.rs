@@ -187,7 +187,7 @@ impl Tried<'_> {
             let others = agree.trim_start_matches("they ");
             let name = &names[anchor];
             let remedy = format!(
-                "ranges to {name} are too short for the others, which {others}: look where it stands"
+                "ranges to {name} are too short for the others, which {others}: look where it stands, or calibrate it"
             );
             (Reason::Anchor, remedy)
         })
@@ -302,7 +302,7 @@ fn fit(observations: &[Observation<f64>], height: Option<f64>) -> Option<Fit> {
         common_bias: with_bias.then_some(COMMON_BIAS_M),
         ..Solver::new(height.unwrap_or_default())
     };
-    // To a centimetre: only the sizes of residuals count.
+    // A centimetre is accurate enough for the sizes of residuals.
     let (cost, place, common) = match height {
         Some(height) => {
             let mut search = Search::<f64, 2>::new(None);
