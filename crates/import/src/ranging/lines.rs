@@ -66,7 +66,9 @@ pub(super) fn read(
     damage.accept(messages.len() + damage.count(), options.strict)?;
     let mut tags = Tags::default();
     let tag_of = |message: &Message| message.tag.clone().unwrap_or_default();
-    messages.iter().for_each(|(_, message)| tags.note(&tag_of(message)));
+    for (_, message) in &messages {
+        tags.note(&tag_of(message));
+    }
     let wanted = tags.wanted(options)?;
     messages.retain(|(_, message)| Tags::reads(wanted, &tag_of(message)));
     let (times, clock) = times(&messages, options)?;

@@ -35,7 +35,9 @@ pub(super) fn read(
     let mut entries: Vec<_> = entries.collect();
     let mut tags = Tags::default();
     let tag_of = |heard: &Heard| heard.tag.clone().unwrap_or_default();
-    entries.iter().for_each(|(_, it)| tags.note(&tag_of(&it.heard)));
+    for (_, entry) in &entries {
+        tags.note(&tag_of(&entry.heard));
+    }
     let topic = options.topic.clone().filter(|_| is_tag);
     let chosen = tags.wanted(&Options { topic, ..Options::default() })?;
     entries.retain(|(_, it)| Tags::reads(chosen, &tag_of(&it.heard)));

@@ -281,9 +281,6 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         }
         let most = if seen.innovation > T::ZERO { T::ONE } else { T::from_f64(MOST_OF_ONE) };
         self.too_short += (seen.nis.min(most) - self.too_short) * T::from_f64(SHARE_OF_ONE);
-        if self.best() != best {
-            self.too_short = T::ONE;
-        }
         // With two anchors it could not begin anew.
         if self.heard > 2 && self.too_short > T::from_f64(TOO_SHORT) {
             self.courses = [None; 2];

@@ -17,7 +17,10 @@ fn days_us(reference_us: i64, first_us: i64) -> i64 {
 }
 
 /// Puts the IMU, the wheels and the courses onto the day of the ranges.
-pub(super) fn align<'a>(sensors: &mut Sensors, courses: impl IntoIterator<Item = &'a mut Course<2>>) {
+pub(super) fn align<'a>(
+    sensors: &mut Sensors,
+    courses: impl IntoIterator<Item = &'a mut Course<2>>,
+) {
     let differences = sensors.differences.first().map(|it| it.time_us);
     let Some(reference_us) = sensors.ranges.first().map(|it| it.time_us).or(differences) else {
         return;

@@ -303,17 +303,14 @@ fn fit(observations: &[Observation<f64>], height: Option<f64>) -> Option<Fit> {
         ..Solver::new(height.unwrap_or_default())
     };
     // A centimetre is accurate enough for the sizes of residuals.
-    let (cost, place, common) = match height {
-        Some(height) => {
-            let mut search = Search::<f64, 2>::new(None);
-            let fix = search.advance(&solver, observations, usize::MAX).ok()??;
-            (fix.cost, fix.position.push(height), fix.common_bias)
-        }
-        None => {
-            let mut search = Search::<f64, 3>::new(None);
-            let fix = search.advance(&solver, observations, usize::MAX).ok()??;
-            (fix.cost, fix.position, fix.common_bias)
-        }
+    let (cost, place, common) = if let Some(height) = height {
+        let mut search = Search::<f64, 2>::new(None);
+        let fix = search.advance(&solver, observations, usize::MAX).ok()??;
+        (fix.cost, fix.position.push(height), fix.common_bias)
+    } else {
+        let mut search = Search::<f64, 3>::new(None);
+        let fix = search.advance(&solver, observations, usize::MAX).ok()??;
+        (fix.cost, fix.position, fix.common_bias)
     };
     Some(Fit { left: (cost / spare as f64).sqrt(), place, common })
 }
