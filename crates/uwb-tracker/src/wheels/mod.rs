@@ -54,10 +54,10 @@ pub struct WheelTracker<T: Scalar, const A: usize> {
 
 /// Average of `too_short` above which the course is wrong, and the estimate begins anew. With few ranges, both courses may lead off
 /// while the heading is hardly known. A wrong position makes some ranges seem too short; an obstacle never does.
-const TOO_SHORT: f64 = 4.0;
+const TOO_SHORT: f64 = 3.0;
 /// Weight of a range in it, and the largest NIS that counts: one range that is wrong is not enough.
 const SHARE_OF_ONE: f64 = 0.2;
-const MOST_OF_ONE: f64 = 12.0;
+const MOST_OF_ONE: f64 = 10.0;
 /// Mean NIS of ranges above which the wheels are assumed to slip, or not to be this robot's; below it, their noise
 /// grows with it.
 const NIS_OF_SLIP: f64 = 4.0;
