@@ -29,7 +29,7 @@ use crate::options::Options;
 use crate::text::Text;
 
 pub use self::labels::Labels;
-pub use self::tags::Tags;
+pub use self::tags::keep_one_tag;
 
 /// The usual time between two ranging epochs of a tag lies in this interval, s.
 const USUAL_STEP: std::ops::RangeInclusive<f64> = 2e-3..=2.0;

@@ -1,6 +1,6 @@
 //! Logs with one line of text for the ranges to all anchors at one epoch.
 
-use super::{Found, Tags, USUAL_STEP};
+use super::{Found, USUAL_STEP, keep_one_tag};
 use crate::clock::unit_of_range_times;
 use crate::damage::{Damage, Fault};
 use crate::error::{Error, quoted};
@@ -64,13 +64,11 @@ pub(super) fn read(
         }
     }
     damage.accept(messages.len() + damage.count(), options.strict)?;
-    let mut tags = Tags::default();
-    let tag_of = |message: &Message| message.tag.clone().unwrap_or_default();
-    for (_, message) in &messages {
-        tags.note(&tag_of(message));
-    }
-    let wanted = tags.wanted(options)?;
-    messages.retain(|(_, message)| Tags::reads(wanted, &tag_of(message)));
+    keep_one_tag(
+        &mut messages,
+        |(_, message)| message.tag.as_deref().unwrap_or_default(),
+        options.topic.as_deref(),
+    )?;
     let (times, clock) = times(&messages, options)?;
     let mut found = Found::default();
     for ((_, message), time_us) in messages.iter().zip(times) {
@@ -126,13 +124,12 @@ fn times(
     }
     let said: Option<Vec<Said>> = messages.iter().map(|(said, _)| *said).collect();
     if let Some(said) = said {
-        if said.iter().all(|it| matches!(it, Said::Moment(_))) {
-            let mut days = Days::default();
-            let times = said.iter().map(|said| microseconds(said.seconds(&mut days))).collect();
-            return Ok((times, "as dates or times of day: from the data".to_owned()));
-        }
         let mut days = Days::default();
         let values: Vec<_> = said.iter().map(|said| said.seconds(&mut days)).collect();
+        if said.iter().all(|it| matches!(it, Said::Moment(_))) {
+            let times = values.into_iter().map(microseconds).collect();
+            return Ok((times, "as dates or times of day: from the data".to_owned()));
+        }
         let (unit, from) = match &options.units.time {
             Some(TimeUnit::Clock(unit)) => (unit.clone(), "option"),
             _ => (unit_of_range_times(values.iter().copied(), USUAL_STEP)?, "from the data"),

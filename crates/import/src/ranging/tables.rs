@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-use super::{Found, Tags, USUAL_STEP};
+use super::tags::TagColumn;
+use super::{Found, USUAL_STEP, keep_one_tag};
 use crate::clock::unit_of_range_times;
 use crate::damage::{Damage, Fault};
 use crate::error::{Error, quoted};
@@ -42,13 +43,12 @@ pub(super) fn read(
 ) -> Result<Option<(Found, String, Damage)>, Error> {
     let found = NamedTable::find(text, options, |heading| {
         let time = heading.find("t").ok().flatten();
-        let tag = heading.find("tag").ok().flatten().map(|tag| tag.column);
+        let tag = TagColumn::find(heading);
         time.zip(form(heading)).map(|(time, form)| (time, tag, form)).ok_or(())
     });
     let Some(Ok((table, (time, tag, form)))) = found else { return Ok(None) };
     let mut damage = Damage { end_may_be_cut: !text.ends_with_line_break(), ..Damage::default() };
     let (mut rows, mut total, mut are_moments) = (Vec::new(), 0, false);
-    let mut tags = Tags::default();
     for (line, fields) in table.rows() {
         total += 1;
         let field = fields.get(time.column).map(AsRef::as_ref).unwrap_or_default();
@@ -64,13 +64,10 @@ pub(super) fn read(
             });
             continue;
         };
-        let tag = tag.and_then(|tag| fields.get(tag)).map(|tag| letters(tag)).unwrap_or_default();
-        tags.note(&tag);
-        rows.push((tag, seconds, said));
+        rows.push((tag.of(&fields), seconds, said));
     }
     damage.accept(total, options.strict)?;
-    let wanted = tags.wanted(options)?;
-    rows.retain(|(tag, ..)| Tags::reads(wanted, tag));
+    keep_one_tag(&mut rows, |(tag, ..)| tag, options.topic.as_deref())?;
     let (unit, from) = match &time.unit {
         _ if are_moments => (Unit::new(1.0, "s"), "from the data"),
         Some(unit) => (unit.clone(), "header"),

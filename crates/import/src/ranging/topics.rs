@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 
 use super::labels::place;
-use super::{Found, Tags};
-use crate::containers::{self, Heard, Label, RangeTopics};
+use super::tags::is_named;
+use super::{Found, keep_one_tag};
+use crate::containers::{self, Label, RangeEntry, RangeTopics};
 use crate::damage::Damage;
 use crate::error::{Error, listed};
 use crate::options::Options;
@@ -19,28 +20,21 @@ pub(super) fn read(
     let Some((format, topics)) = containers::ranges(bytes, options)? else { return Ok(None) };
     options.refuse_beside(&["range", "anchor"])?;
     // An option may name a tag in place of a topic.
-    let is_chosen = |heard: &Heard| {
-        let same = |(tag, said): (&String, &String)| tag.eq_ignore_ascii_case(said.trim());
-        heard.tag.as_ref().zip(options.topic.as_ref()).is_some_and(same)
+    let said = options.topic.as_deref();
+    let is_chosen = |it: &&RangeEntry| {
+        it.heard.tag.as_ref().zip(said).is_some_and(|(tag, said)| is_named(tag, said))
     };
     let of_tag: BTreeSet<usize> =
-        topics.entries.iter().filter(|it| is_chosen(&it.heard)).map(|it| it.topic).collect();
-    let is_tag = !of_tag.is_empty();
-    let wanted = if is_tag { of_tag.into_iter().collect() } else { topics.wanted()? };
+        topics.entries.iter().filter(is_chosen).map(|it| it.topic).collect();
+    let said = said.filter(|_| !of_tag.is_empty());
+    let wanted = if said.is_some() { of_tag.into_iter().collect() } else { topics.wanted()? };
     let scales = wanted.iter().map(|&it| topics.scale(it)).collect::<Result<Vec<_>, _>>()?;
     let mut told: Vec<_> = scales.iter().map(|(_, told)| told.clone()).collect();
     told.dedup();
     let is_wanted = |topic: &usize| wanted.iter().position(|it| it == topic);
     let entries = topics.entries.iter().filter_map(|it| Some((is_wanted(&it.topic)?, it)));
     let mut entries: Vec<_> = entries.collect();
-    let mut tags = Tags::default();
-    let tag_of = |heard: &Heard| heard.tag.clone().unwrap_or_default();
-    for (_, entry) in &entries {
-        tags.note(&tag_of(&entry.heard));
-    }
-    let topic = options.topic.clone().filter(|_| is_tag);
-    let chosen = tags.wanted(&Options { topic, ..Options::default() })?;
-    entries.retain(|(_, it)| Tags::reads(chosen, &tag_of(&it.heard)));
+    keep_one_tag(&mut entries, |(_, it)| it.heard.tag.as_deref().unwrap_or_default(), said)?;
     let has_stamps = entries.iter().any(|(_, it)| it.stamp.is_some_and(|stamp| stamp != 0.0));
     let by_topic = names_by_topic(&topics, &wanted, anchors)?;
     let mut found = Found::default();

@@ -1,7 +1,8 @@
 //! Tables with one column for each anchor.
 
 use super::labels::place;
-use super::{Found, Tags, USUAL_STEP};
+use super::tags::TagColumn;
+use super::{Found, USUAL_STEP, keep_one_tag};
 use crate::clock::unit_of_range_times;
 use crate::damage::{Damage, Fault};
 use crate::error::{Error, quoted};
@@ -43,14 +44,13 @@ pub(super) fn read(
         let ranges = columns(heading, anchors, options);
         let is_wide = ranges.iter().filter(|it| it.is_listed).count() >= FEWEST
             && !heading.names().iter().any(|name| name == "anchor");
-        let tag = heading.find("tag").ok().flatten().map(|tag| tag.column);
+        let tag = TagColumn::find(heading);
         time.filter(|_| is_wide).map(|time| (time, tag, ranges)).ok_or(())
     });
     let Some(Ok((table, (time, tag, columns)))) = found else { return Ok(None) };
     one_each(&table.heading, &columns, anchors)?;
     let mut damage = Damage { end_may_be_cut: !text.ends_with_line_break(), ..Damage::default() };
     let (mut rows, mut total, mut are_moments) = (Vec::new(), 0, false);
-    let mut tags = Tags::default();
     for (line, fields) in table.rows() {
         total += 1;
         let field = fields.get(time.column).map(AsRef::as_ref).unwrap_or_default();
@@ -69,13 +69,10 @@ pub(super) fn read(
             let metres = table.number(fields.get(column.at)?)? * column.scale;
             metres.is_finite().then_some(metres)
         };
-        let tag = tag.and_then(|tag| fields.get(tag)).map(|tag| letters(tag)).unwrap_or_default();
-        tags.note(&tag);
-        rows.push((tag, seconds, columns.iter().map(range).collect::<Vec<_>>()));
+        rows.push((tag.of(&fields), seconds, columns.iter().map(range).collect::<Vec<_>>()));
     }
     damage.accept(total, options.strict)?;
-    let wanted = tags.wanted(options)?;
-    rows.retain(|(tag, ..)| Tags::reads(wanted, tag));
+    keep_one_tag(&mut rows, |(tag, ..)| tag, options.topic.as_deref())?;
     let (unit, from) = match &time.unit {
         _ if are_moments => (Unit::new(1.0, "s"), "from the data"),
         Some(unit) => (unit.clone(), "header"),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use kestirim_import::Options;
-use kestirim_import::ranging::{self, Labels, Tags};
+use kestirim_import::ranging::{self, Labels, keep_one_tag};
 use kestirim_replay::robot::{Anchors, Difference, Exchange, RangeRow};
 
 use crate::Error;
@@ -76,7 +76,7 @@ pub fn read_moving(
     options: &Options,
 ) -> Result<(RangeLog, Found), Error> {
     let (mut log, mut labels) = (RangeLog::default(), Labels::default());
-    let (mut tags, mut of_tag) = (Tags::default(), Vec::new());
+    let mut tags = Vec::new();
     let bytes = text::bytes(path)?;
     if let Some(found) = of_radio(path, &bytes, anchors, options)? {
         return Ok(found);
@@ -90,17 +90,14 @@ pub fn read_moving(
             let time_us = row.time_us(t)?;
             let range = optional_range(row, range)?;
             log.add(time_us, labels.index(&row.text(anchor)), range);
-            if let Some(tag) = tag {
-                let tag = row.text(tag).into_owned();
-                tags.note(&tag);
-                of_tag.push(tag);
-            }
+            tags.push(tag.map(|tag| row.text(tag).into_owned()).unwrap_or_default());
             Ok(())
         },
     )?;
-    let wanted = tags.wanted(options).map_err(|error| table::refused(path, &error))?;
-    let mut of_tag = of_tag.iter();
-    log.rows.retain(|_| of_tag.next().is_none_or(|tag| Tags::reads(wanted, tag)));
+    let mut rows: Vec<(String, RangeRow)> = tags.into_iter().zip(log.rows).collect();
+    keep_one_tag(&mut rows, |(tag, _)| tag, options.topic.as_deref())
+        .map_err(|error| table::refused(path, &error))?;
+    log.rows = rows.into_iter().map(|(_, row)| row).collect();
     log.resolve(&places(&labels, path, anchors)?);
     Ok((log, found))
 }

@@ -1,7 +1,7 @@
 //! Explanations that would make ranges and anchors agree: one thing changed at a time.
 
 use kestirim_health::Reason;
-use kestirim_uwb_ranging::{Observation, Search, Solver};
+use kestirim_uwb_ranging::{Fix, Observation, Search, Solver};
 use nalgebra::Vector3;
 
 use crate::Finding;
@@ -302,15 +302,20 @@ fn fit(observations: &[Observation<f64>], height: Option<f64>) -> Option<Fit> {
         common_bias: with_bias.then_some(COMMON_BIAS_M),
         ..Solver::new(height.unwrap_or_default())
     };
-    // A centimetre is accurate enough for the sizes of residuals.
     let (cost, place, common) = if let Some(height) = height {
-        let mut search = Search::<f64, 2>::new(None);
-        let fix = search.advance(&solver, observations, usize::MAX).ok()??;
+        let fix = best::<2>(&solver, observations)?;
         (fix.cost, fix.position.push(height), fix.common_bias)
     } else {
-        let mut search = Search::<f64, 3>::new(None);
-        let fix = search.advance(&solver, observations, usize::MAX).ok()??;
+        let fix = best::<3>(&solver, observations)?;
         (fix.cost, fix.position, fix.common_bias)
     };
     Some(Fit { left: (cost / spare as f64).sqrt(), place, common })
+}
+
+/// The best-fitting position, as accurate as the sizes of residuals ask for: to a centimetre.
+fn best<const D: usize>(
+    solver: &Solver<f64>,
+    observations: &[Observation<f64>],
+) -> Option<Fix<f64, D>> {
+    Search::new(None).advance(solver, observations, usize::MAX).ok()?.copied()
 }
