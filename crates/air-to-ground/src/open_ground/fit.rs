@@ -1,6 +1,7 @@
 use kestirim_scalar::Scalar;
 
 use super::Supposition;
+use super::added::added;
 use super::sight::{PATTERN_DB, Row, Sight, decibels, mean_square, used};
 
 /// Degrees of freedom of Student's t-distribution, whose tails represent antenna nulls and buildings.
@@ -15,8 +16,6 @@ const LONGEST_DB: f64 = 10.0;
 const ABOVE_DB: f64 = 2.0;
 /// Least number of signals from which the fit is started; with fewer, all levels are used.
 const FEWEST: usize = 3;
-/// Powers that differ by more than e⁹ (39 dB) are not added.
-const FARTHEST: f64 = 9.0;
 
 /// The fit of the measurements under a supposition and a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +57,7 @@ impl<T: Scalar> Supposition<T> {
     /// floor to one above it.
     fn received(&self, signal: T) -> (T, T) {
         let (level, share) = match self.floor {
-            Some(floor) => above(floor, signal),
+            Some(floor) => added(floor, signal),
             None => (signal, T::ONE),
         };
         match self.ceiling {
@@ -134,13 +133,15 @@ fn start<T: Scalar, const P: usize>(sight: &Sight<T, P>, supposition: &Suppositi
 }
 
 /// The residual of a measurement and its noise.
-struct Seen<T> {
+struct Seen<T: Scalar> {
     /// The residual, dB.
     error: T,
     /// Derivative of the level with respect to the signal: from zero in the floor to one above it.
     share: T,
     /// Square of the noise scale, dB².
     variance: T,
+    /// The same, prepared for division.
+    divisor: T::Divisor,
     /// Square of the residual in units of the variance.
     square: T,
 }
@@ -160,7 +161,8 @@ impl<T: Scalar> Seen<T> {
         let scale = share * supposition.scale;
         let variance = scale * scale + T::from_f64(WAVERING_DB * WAVERING_DB);
         let error = (row.level - level).clamp(-T::from_f64(150.0), T::from_f64(150.0));
-        Self { error, share, variance, square: error / variance * error }
+        let divisor = variance.divisor();
+        Self { error, share, variance, divisor, square: error.divided_by(divisor) * error }
     }
 
     /// The log-density up to a constant.
@@ -168,20 +170,6 @@ impl<T: Scalar> Seen<T> {
         let freedom = T::from_f64(FREEDOM);
         let tail = (T::ONE + self.square / freedom).ln() * (freedom + T::ONE);
         -(self.variance.ln() + tail) * T::HALF
-    }
-}
-
-/// The combined power of a signal and a floor, dB, and the signal's share of it.
-fn above<T: Scalar>(floor: T, signal: T) -> (T, T) {
-    let decibels = T::from_f64(10.0 / core::f64::consts::LN_10);
-    let below = (floor - signal) / decibels;
-    if below > T::from_f64(FARTHEST) {
-        (floor, T::ZERO)
-    } else if below < -T::from_f64(FARTHEST) {
-        (signal, T::ONE)
-    } else {
-        let sum = T::ONE + below.exp();
-        (signal + decibels * sum.ln(), sum.recip())
     }
 }
 
@@ -198,7 +186,8 @@ impl<T: Scalar, const P: usize> Normal<T, P> {
 
     fn add(&mut self, row: &Row<T, P>, seen: &Seen<T>, power: T) {
         let freedom = T::from_f64(FREEDOM);
-        let weight = power * (freedom + T::ONE) / (freedom + seen.square) / seen.variance;
+        let weight = power * (freedom + T::ONE) / (freedom + seen.square);
+        let weight = weight.divided_by(seen.divisor);
         let (slope, error) = (weight * seen.share, seen.error);
         let used = self.used;
         for (index, line) in self.matrix.iter_mut().enumerate().take(used) {

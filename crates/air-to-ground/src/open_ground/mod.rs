@@ -1,5 +1,6 @@
 //! Received levels from a transmitter of which little is known.
 
+mod added;
 mod fit;
 mod sight;
 
