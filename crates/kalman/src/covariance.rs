@@ -251,10 +251,9 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         sums.map(T::finish)
     }
 
-    /// P ← P − k·gᵀ for the gain k = g/S and g = P hᵀ.
+    /// P ← P − k·gᵀ for the gain k = g/S and g = P hᵀ, after [`Covariance::absorb_rounding_of`].
     #[inline(always)]
     pub(crate) fn downdate(&mut self, gain: &[T; N], g: &[T; N]) {
-        self.absorb_rounding_of(g);
         for column in 0..N {
             // Among many states, some have nothing to do with the measurement, such as ambiguities of satellites out of
             // view.
@@ -270,7 +269,6 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     /// P ← P − k·gᵀ as in [`Covariance::downdate`], for all entries but row and column `i`.
     #[inline(always)]
     pub(crate) fn downdate_beside(&mut self, i: usize, gain: &[T; N], g: &[T; N]) {
-        self.absorb_rounding_of(g);
         for column in 0..N {
             for row in column..N {
                 if row != i && column != i {
@@ -303,35 +301,27 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     }
 
     /// [`Covariance::absorb_rounding`] before an update: in fixed point half a unit of the gain counts |g| times.
+    ///
+    /// An update in fixed point is refused if the gain or a variance is on a rail, which the update would leave, or if a
+    /// variance would become negative. Floats need none of this: what is not finite stays so.
     #[inline(always)]
-    fn absorb_rounding_of(&mut self, g: &[T; N]) {
+    pub(crate) fn absorb_rounding_of(&mut self, gain: &[T; N], g: &[T; N]) -> Result<(), Error> {
         if T::SPREADS {
-            return self.absorb_rounding();
-        }
-        for index in 0..N {
-            let variance = &mut self.lower.data.0[index][index];
-            *variance += absorbed::<T, N>(*variance, g[index]);
-        }
-    }
-
-    /// Refuses an update in fixed point if the gain or a variance is on a rail, which the update would leave, or if a variance would
-    /// become negative. Floats need none of this: what is not finite stays so.
-    #[inline(always)]
-    pub(crate) fn can_lose(&self, gain: &[T; N], g: &[T; N]) -> Result<(), Error> {
-        if T::SPREADS {
+            self.absorb_rounding();
             return Ok(());
         }
-        if !T::all_finite(gain) {
+        let mut variances: [T; N] = core::array::from_fn(|index| self.lower.data.0[index][index]);
+        if !(T::all_finite(gain) && T::all_finite(&variances)) {
             return Err(Error::NotFinite);
         }
         for index in 0..N {
-            let variance = self.lower.data.0[index][index];
-            if !variance.is_finite() {
-                return Err(Error::NotFinite);
-            }
-            if variance + absorbed::<T, N>(variance, g[index]) < gain[index] * g[index] {
+            variances[index] += absorbed::<T, N>(variances[index], g[index]);
+            if variances[index] < gain[index] * g[index] {
                 return Err(Error::NotPositive);
             }
+        }
+        for index in 0..N {
+            self.lower.data.0[index][index] = variances[index];
         }
         Ok(())
     }

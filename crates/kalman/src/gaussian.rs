@@ -288,7 +288,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         Ok(weights.report())
     }
 
-    /// x ← x + k ν, and the gain k. (By reference: within a `Result` it would be copied.)
+    /// x ← x + k ν, the gain k, and the rounding of the update absorbed. (By reference: within a `Result` it would be copied.)
     #[inline(always)]
     fn move_mean(
         &mut self,
@@ -305,7 +305,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         if !T::all_finite(&mean) {
             return Err(Error::NotFinite);
         }
-        self.covariance.can_lose(gain, cross)?;
+        self.covariance.absorb_rounding_of(gain, cross)?;
         *self.mean.as_array_mut() = mean;
         Ok(())
     }
