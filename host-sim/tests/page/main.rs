@@ -1,4 +1,5 @@
-//! Tests of the explorer, the report and the page of a stream in a real browser: Debian's `chromium`, headless.
+//! Tests of the explorer, the report and the page of a stream in a real browser: Debian's `chromium-headless-shell`
+//! or `chromium`.
 //!
 //! Screenshots are kept in `target/tmp/screenshots`. Without a browser the tests report SKIPPED, unless
 //! `KESTIRIM_REQUIRE_BROWSER` is set.
