@@ -10,6 +10,7 @@ use std::process::{Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
+use kestirim_simulate::random::{stream, uniform};
 use tempfile::TempDir;
 
 fn host_sim(folder: &Path, arguments: &[&str]) -> Output {
@@ -156,7 +157,7 @@ fn killed(times: u32, plan: &str, longest: Duration) {
     let folder = with_plan(plan);
     let folder = folder.path();
     let (expected, text) = single_run(folder);
-    let mut moment = 7_u64;
+    let mut random = stream(7, 0);
     for _ in 0..times {
         let mut sweep = Command::new(env!("CARGO_BIN_EXE_host-sim"))
             .current_dir(folder)
@@ -164,9 +165,7 @@ fn killed(times: u32, plan: &str, longest: Duration) {
             .stderr(Stdio::null())
             .spawn()
             .expect("the program runs");
-        moment =
-            moment.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        sleep(longest.mul_f64((moment >> 11) as f64 / (1_u64 << 53) as f64));
+        sleep(longest.mul_f64(uniform(&mut random)));
         sweep.kill().expect("SIGKILL");
         sweep.wait().expect("it ends");
     }

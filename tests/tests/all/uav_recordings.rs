@@ -11,6 +11,7 @@ use kestirim_replay::uav::{
     Deviations, Error, EstimatorKind, Extended, Followed, Log, Model, ModelFile, Options,
     STATE_COLUMNS, Sample,
 };
+use kestirim_simulate::random::{normal, stream};
 use kestirim_tests::recordings::folder_of;
 use kestirim_uav_estimator::{Drift, Dynamics};
 use kestirim_uav_longitudinal::StateSpace;
@@ -128,22 +129,6 @@ fn identified(flight: &Flight, sensors: &Sensors) -> Model {
     }
 }
 
-/// A generator of pseudo-random Gaussian numbers.
-struct Dice(u64);
-
-impl Dice {
-    fn gaussian(&mut self) -> f64 {
-        let mut uniform = || {
-            self.0 = self
-                .0
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-        };
-        (-2.0 * uniform().ln()).sqrt() * (std::f64::consts::TAU * uniform()).cos()
-    }
-}
-
 /// Samples of some outputs, with noise of the given standard deviations and an offset added to each.
 fn log(
     model: &Model,
@@ -155,11 +140,11 @@ fn log(
 ) -> Log {
     let place = |name: &&str| OUTPUTS.iter().position(|output| output == name).expect("an output");
     let outputs: Vec<usize> = names.iter().map(place).collect();
-    let mut dice = Dice(seed);
+    let mut random = stream(seed, 0);
     let sample = |k: usize| {
         let measured = outputs.iter().zip(added).map(|(&output, added)| {
             let sigma = noise.map_or(0.0, |sensors| sensors.sigmas[output]);
-            Some(flight[OUTPUTS[output]][k] + added + sigma * dice.gaussian())
+            Some(flight[OUTPUTS[output]][k] + added + normal(&mut random, sigma))
         });
         Sample {
             t_us: (flight["t"][k] * 1e6).round() as i64,
@@ -265,11 +250,11 @@ fn by_filter_error(name: &str, noise: Option<&Sensors>) -> Option<Model> {
     let path = folder_of("uav")?.join("flights").join(name).with_extension("csv");
     let mut flight = host_sim::systems::uav::identify::flight(&path).expect("a flight");
     flight.columns.retain(|(name, _)| OUTPUTS.contains(&name.as_str()));
-    let mut dice = Dice(3);
+    let mut random = stream(3, 0);
     for (name, values) in &mut flight.columns {
         let output = OUTPUTS.iter().position(|output| output == name).expect("an output");
         let sigma = noise.map_or(0.0, |sensors| sensors.sigmas[output]);
-        values.iter_mut().flatten().for_each(|value| *value += sigma * dice.gaussian());
+        values.iter_mut().flatten().for_each(|value| *value += normal(&mut random, sigma));
     }
     let found = kestirim_uav_identification::identify(&[flight], None).expect("a model");
     let file = serde_json::to_string(&found.model).expect("a file");

@@ -6,6 +6,9 @@ mod forms;
 use forms::{Conventional, Form, Joseph, Ours, Ud};
 use kestirim_scalar::{Q12_20, Scalar};
 use nalgebra::{Matrix4, Vector4};
+use rand_distr::{Distribution, StandardUniform};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::SeedableRng;
 
 /// A task that a form of the covariance must survive.
 struct Task {
@@ -53,7 +56,8 @@ fn definiteness(p: &Matrix4<f64>) -> f64 {
 fn worst<T: Scalar, F: Form<T>>(task: &Task, updates: u32) -> f64 {
     let number = T::from_f64;
     let mut form = F::new(task.variances.map(number));
-    let (mut worst, mut random, dt) = (f64::INFINITY, 1_u64, 0.1);
+    let (mut worst, dt) = (f64::INFINITY, 0.1);
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
     for k in 0..updates {
         if task.q > 0.0 && k % 4 == 0 {
             for axis in 0..2 {
@@ -63,11 +67,8 @@ fn worst<T: Scalar, F: Form<T>>(task: &Task, updates: u32) -> f64 {
                 form.shear(axis, number(dt / 2.0));
             }
         }
-        // Marsaglia's xorshift: reproducible, and good enough for directions.
-        random ^= random << 13;
-        random ^= random >> 7;
-        random ^= random << 17;
-        let angle = 0.7 + task.spread * ((random >> 11) as f64 / (1_u64 << 53) as f64);
+        let share: f64 = StandardUniform.sample(&mut random);
+        let angle = 0.7 + task.spread * share;
         let h = if task.q > 0.0 {
             Vector4::new(angle.cos(), angle.sin(), 0.0, 0.0)
         } else {

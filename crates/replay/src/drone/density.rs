@@ -222,6 +222,9 @@ fn spread(cells: &[f64], kernel: &[f64], stride: usize) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand_distr::{Distribution, StandardNormal, StandardUniform};
+    use rand_xoshiro::Xoshiro256PlusPlus;
+    use rand_xoshiro::rand_core::SeedableRng;
 
     /// The weights of a grid of points.
     fn points(weight: impl Fn(f64, f64) -> f64) -> Vec<Weighed> {
@@ -248,25 +251,15 @@ mod tests {
         assert!((found / known - 1.0).abs() < share, "{found} instead of {known}");
     }
 
-    /// Numbers between 0 and 1 that look random.
-    fn uniform(count: u64) -> impl Iterator<Item = f64> {
-        let mut state = 1_u64;
-        (0..count).map(move |_| {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        })
+    /// Particles of equal weight, their coordinates drawn from a distribution and multiplied by a scale.
+    fn drawn(count: usize, from: impl Distribution<f64> + Copy, scale: [f64; 2]) -> Vec<Weighed> {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
+        let mut place = || (scale.map(|scale| scale * from.sample(&mut random)), 1.0);
+        (0..count).map(|_| place()).collect()
     }
 
-    fn normal(count: u64, sigma: [f64; 2]) -> Vec<Weighed> {
-        let all: Vec<f64> = uniform(2 * count).collect();
-        let pair = |pair: &[f64]| {
-            let (size, turn) =
-                ((-2.0 * (1.0 - pair[0]).ln()).sqrt(), std::f64::consts::TAU * pair[1]);
-            ([sigma[0] * size * turn.cos(), sigma[1] * size * turn.sin()], 1.0)
-        };
-        all.chunks_exact(2).map(pair).collect()
+    fn normal(count: usize, sigma: [f64; 2]) -> Vec<Weighed> {
+        drawn(count, StandardNormal, sigma)
     }
 
     #[test]
@@ -293,8 +286,7 @@ mod tests {
     #[test]
     fn of_a_uniform_square_it_is_nine_tenths() {
         let lattice = points(|x, y| f64::from(u8::from(x.abs() < 101.0 && y.abs() < 101.0)));
-        let cast: Vec<f64> = uniform(4000).map(|it| 210.0 * it).collect();
-        let cast = cast.chunks_exact(2).map(|place| ([place[0], place[1]], 1.0)).collect();
+        let cast = drawn(2000, StandardUniform, [210.0; 2]);
         for (cloud, room, share) in [(lattice, Some(100.0), 0.15), (cast, None, 0.15)] {
             let found = told(&cloud, room);
             close(found.area_m2, 0.9 * 210.0 * 210.0, share);

@@ -125,7 +125,7 @@ fn rms(numbers: impl Iterator<Item = f64>) -> f64 {
 fn errors_and_innovations_are_as_large_as_the_filter_says() {
     let (mut nees, mut nis, mut count) = (0.0, [0.0; 6], 0.0);
     for seed in 0..20 {
-        let mut dice = Dice(seed);
+        let mut dice = Dice::new(seed);
         let beside = [0.3, 0.02, 0.02, 8.0].map(|sigma| sigma * dice.gaussian());
         let (samples, truths) = flight(30.0, 2.0, beside, &mut dice);
         let mut filter =
@@ -158,7 +158,7 @@ fn errors_and_innovations_are_as_large_as_the_filter_says() {
 
 #[test]
 fn gusts_are_followed_where_a_filter_without_them_is_lost() {
-    let (samples, truths) = flight(60.0, 2.0, [0.0; 4], &mut Dice(3));
+    let (samples, truths) = flight(60.0, 2.0, [0.0; 4], &mut Dice::new(3));
     let error = |gust: f64| {
         let mut filter =
             AugmentedFlight::<f64, 11, 7, 6>::new(&model(gust), &Vector2::zeros(), USUAL_S)
@@ -187,7 +187,7 @@ fn without_anything_beside_it_is_the_filter_of_four_states() {
     let model = AugmentedModel::<4, 4, 3>::new(&navion(), &SMatrix::zeros(), &outputs).unwrap();
     let mut augmented =
         AugmentedFlight::<f64, 4, 4, 3>::new(&model, &noise.inputs, USUAL_S).unwrap();
-    let (samples, _) = flight(20.0, 0.0, [0.0; 4], &mut Dice(7));
+    let (samples, _) = flight(20.0, 0.0, [0.0; 4], &mut Dice::new(7));
     for (index, sample) in
         samples.iter().enumerate().filter(|(index, _)| !(300..320).contains(index))
     {
@@ -217,7 +217,7 @@ fn other_numbers_find_the_same() {
         });
         taken.collect()
     }
-    let (samples, truths) = flight(40.0, 1.0, [0.1, 0.01, -0.02, 5.0], &mut Dice(11));
+    let (samples, truths) = flight(40.0, 1.0, [0.1, 0.01, -0.02, 5.0], &mut Dice::new(11));
     let exact = estimates::<f64>(&samples);
     for (other, share) in [(estimates::<f32>(&samples), 0.05), (estimates::<Q16_16>(&samples), 1.0)]
     {
@@ -243,7 +243,7 @@ fn fixed_point_goes_on_after_minutes_without_an_output() {
     let roomy = roomy.unwrap().with_gust(&gusts(1.0)).unwrap().with_wind(&wind).unwrap();
     let mut filter =
         AugmentedFlight::<Q16_16, 16, 10, 6>::new(&roomy, &Vector2::zeros(), USUAL_S).unwrap();
-    let (samples, truths) = flight(240.0, 1.0, [0.0, 0.0, 0.0, 5.0], &mut Dice(3));
+    let (samples, truths) = flight(240.0, 1.0, [0.0, 0.0, 0.0, 5.0], &mut Dice::new(3));
     let place = 10;
     for (index, sample) in samples.iter().enumerate() {
         let is_silent = (1_000..10_000).contains(&index);
@@ -275,7 +275,7 @@ fn what_does_not_fit_is_refused() {
     assert_eq!(Model::new(&navion(), &SMatrix::zeros(), &wrong), Err(Error::NotFinite));
     let mut filter =
         AugmentedFlight::<f32, 11, 7, 6>::new(&full, &Vector2::zeros(), USUAL_S).unwrap();
-    let (samples, _) = flight(0.1, 0.0, [0.0; 4], &mut Dice(1));
+    let (samples, _) = flight(0.1, 0.0, [0.0; 4], &mut Dice::new(1));
     filter.take(&samples[0]).unwrap();
     let before = filter;
     let late = Sample { time_us: 0, ..samples[1] };

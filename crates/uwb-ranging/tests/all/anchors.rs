@@ -4,15 +4,16 @@ use kestirim_scalar::{Q12_20, Scalar};
 use kestirim_uwb_ranging::{Calibration, Error, LevelBias, Quartiles, survey};
 use nalgebra::{Vector2, Vector3};
 use proptest::prelude::*;
+use rand_distr::{Distribution, StandardUniform};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::SeedableRng;
 
-/// Pseudo-random numbers from −1 to 1: Marsaglia's xorshift.
+/// Uniformly distributed numbers from −1 to 1.
 fn noise(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed | 1;
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     move || {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        let share: f64 = StandardUniform.sample(&mut random);
+        2.0 * share - 1.0
     }
 }
 

@@ -1,5 +1,9 @@
 //! The first position, compared with the least squares on which it is based.
 
+use rand_distr::{Distribution, StandardUniform};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::SeedableRng;
+
 use super::*;
 use crate::Anchor;
 
@@ -227,36 +231,24 @@ fn in_space_one_range_to_spare_is_left_of_five() {
     assert!(begun_after::<3, 6, 4>(&config, &four, SOON).is_none());
 }
 
-/// Pseudo-random numbers from 0 to 1 (xorshift).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
 /// Starts in random rooms, where up to one range is too long by up to 5 m: the mean and the largest number of ranges
 /// they take, and the share of them within 30 cm.
 fn in_rooms<const A: usize>(is_blocked: bool) -> (f64, u32, f64) {
     const ROOMS: u32 = 1000;
-    let (config, mut random) = (Config::calibrated(1.0), Random(88_172_645_463_325_252));
+    let (config, mut random) = (Config::calibrated(1.0), Xoshiro256PlusPlus::seed_from_u64(1));
+    let mut uniform = || -> f64 { StandardUniform.sample(&mut random) };
     let (mut sum, mut most, mut right) = (0, 0, 0);
     for _ in 0..ROOMS {
-        let tag = SVector::from([8.0 * random.next(), 6.0 * random.next(), 1.0]);
-        let blocked = (random.next() * A as f64) as usize;
+        let tag = SVector::from([8.0 * uniform(), 6.0 * uniform(), 1.0]);
+        let blocked = (uniform() * A as f64) as usize;
         let links: [Link<f64>; A] = core::array::from_fn(|index| {
-            let angle = core::f64::consts::TAU * (index as f64 + 0.5 * random.next()) / A as f64;
-            let height = 0.3 + 2.0 * random.next();
+            let angle = core::f64::consts::TAU * (index as f64 + 0.5 * uniform()) / A as f64;
+            let height = 0.3 + 2.0 * uniform();
             let place = [4.0 + 4.0 * angle.cos(), 3.0 + 3.0 * angle.sin(), height];
             let position = SVector::from(place);
             let mut link = Link::new(Anchor { position, bias: 0.0 }, &config);
-            let excess =
-                if is_blocked && index == blocked { 0.5 + 4.5 * random.next() } else { 0.0 };
-            let noise = 0.2 * random.next() - 0.1;
+            let excess = if is_blocked && index == blocked { 0.5 + 4.5 * uniform() } else { 0.0 };
+            let noise = 0.2 * uniform() - 0.1;
             link.hear(NOW_US, (position - tag).norm() + excess + noise);
             link
         });

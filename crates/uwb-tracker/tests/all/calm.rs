@@ -4,23 +4,24 @@ use crate::common::{CORNERS, anchors, distance, in_every_scalar, sample};
 use kestirim_scalar::Scalar;
 use kestirim_uwb_tracker::{Config, InertialSample, Tracker};
 use nalgebra::Vector3;
+use rand_distr::{Distribution, StandardUniform};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::SeedableRng;
 
 /// Mean position error, m, for a tag whose x is `way(seconds)`, in the ten seconds before `until`, s. No range arrives
 /// while it is `silent`.
 fn error<T: Scalar>(way: impl Fn(f64) -> f64, silent: impl Fn(f64) -> bool, until: u32) -> f64 {
     let mut tracker =
         Tracker::<T, 2, 5, 4>::new(Config::uncalibrated(T::ONE), &anchors(&CORNERS, 0.0)).unwrap();
-    let (mut noise, mut sum, mut count) = (88_172_645_463_325_252_u64, 0.0, 0_u32);
+    let (mut random, mut sum, mut count) = (Xoshiro256PlusPlus::seed_from_u64(1), 0.0, 0_u32);
     for step in 0..40 * until {
         let seconds = 0.025 * f64::from(step);
         let time_us = 25_000 * u64::from(step);
         let acceleration = Vector3::new(0.0, 0.0, 9.8).map(T::from_f64);
         tracker.inertial(&InertialSample { time_us, acceleration, push: None }).unwrap();
         let tag = [way(seconds), 2.5, 1.0];
-        noise ^= noise << 13;
-        noise ^= noise >> 7;
-        noise ^= noise << 17;
-        let off = 0.1 * ((noise >> 11) as f64 / (1_u64 << 53) as f64 - 0.5);
+        let share: f64 = StandardUniform.sample(&mut random);
+        let off = 0.1 * (share - 0.5);
         if !silent(seconds) {
             let anchor = step as usize % 4;
             let range = distance(CORNERS[anchor], tag) + off;

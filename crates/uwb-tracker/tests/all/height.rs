@@ -6,19 +6,14 @@ use kestirim_uwb_ranging::{Error as NoPlace, Height, HeightSearch};
 use kestirim_uwb_tracker::{Error, HeightFinder, RangeSample};
 use nalgebra::{SVector, Vector3};
 use proptest::prelude::*;
+use rand_distr::{Distribution, StandardNormal};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::SeedableRng;
 
-/// Approximately normal numbers of mean 0 and standard deviation 1: sums of twelve from Marsaglia's xorshift.
+/// Normally distributed numbers of mean 0 and standard deviation 1.
 fn normal(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
-    move || {
-        let uniform = |_| {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
-        (0..12).map(uniform).sum::<f64>() - 6.0
-    }
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+    move || StandardNormal.sample(&mut random)
 }
 
 /// The corners of a room of 6 m × 5 m, all at one height.

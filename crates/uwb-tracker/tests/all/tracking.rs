@@ -7,6 +7,9 @@ use kestirim_uwb_tracker::{
     OdometrySample, Outcome, Report, State, Tracker,
 };
 use nalgebra::{Vector2, Vector3};
+use rand_distr::{Distribution, StandardUniform};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::SeedableRng;
 
 const TAG: [f64; 2] = [3.0, 2.0];
 
@@ -14,21 +17,19 @@ const TAG: [f64; 2] = [3.0, 2.0];
 struct Bench<T: Scalar, const N: usize> {
     tracker: Tracker<T, 2, N, 8>,
     time_us: u64,
-    noise: u64,
+    random: Xoshiro256PlusPlus,
 }
 
 impl<T: Scalar, const N: usize> Bench<T, N> {
     fn new(config: Config<T>) -> Self {
         let tracker = Tracker::new(config, &anchors(&CORNERS, 0.0)).unwrap();
-        Self { tracker, time_us: 0, noise: 88_172_645_463_325_252 }
+        Self { tracker, time_us: 0, random: Xoshiro256PlusPlus::seed_from_u64(1) }
     }
 
     /// Noise from −1 to 1.
     fn noise(&mut self) -> f64 {
-        self.noise ^= self.noise << 13;
-        self.noise ^= self.noise >> 7;
-        self.noise ^= self.noise << 17;
-        (self.noise >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        let share: f64 = StandardUniform.sample(&mut self.random);
+        2.0 * share - 1.0
     }
 
     /// One epoch of all corners, 0.1 s after the last; `excess` is added to the ranges.

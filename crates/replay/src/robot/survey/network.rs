@@ -1,6 +1,9 @@
 //! Shapes of a network of anchors, and their fit.
 
 use nalgebra::{DMatrix, DVector, Vector3};
+use rand_distr::{Distribution, StandardUniform};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::SeedableRng;
 
 use super::{DIFFERENT, Pair};
 
@@ -94,17 +97,13 @@ impl Network<'_> {
     /// Random places within the longest range, the same in every run.
     fn start(&self, number: usize) -> Shape {
         let longest = self.pairs.iter().map(|pair| pair.metres).fold(1.0, f64::max);
-        let mut state = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(number as u64 + 1);
-        let mut coordinate = || {
-            // SplitMix64's output function.
-            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mixed = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1_u64 << 53) as f64 * longest
-        };
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(number as u64);
         let mut place = || {
             let mut place = [0.0; 3];
-            place.iter_mut().take(self.dimensions).for_each(|axis| *axis = coordinate());
+            for axis in place.iter_mut().take(self.dimensions) {
+                let share: f64 = StandardUniform.sample(&mut random);
+                *axis = longest * share;
+            }
             place
         };
         Shape { places: (0..self.anchors).map(|_| place()).collect(), cost: f64::INFINITY }

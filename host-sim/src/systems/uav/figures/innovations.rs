@@ -138,16 +138,12 @@ fn chi_squared(freedom: f64, deviations: f64) -> f64 {
 mod tests {
     use super::*;
     use kestirim_replay::uav::{Deviations, Estimate, Log, Model, Plant};
+    use kestirim_simulate::random::{stream, uniform};
 
-    /// Pseudo-random uniform noise of unit variance.
+    /// Uniformly distributed noise of unit variance.
     fn white(count: usize) -> impl Iterator<Item = f64> {
-        let mut state = 7_u64;
-        (0..count).map(move |_| {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            ((state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5) * 12.0_f64.sqrt()
-        })
+        let mut random = stream(7, 0);
+        (0..count).map(move |_| (uniform(&mut random) - 0.5) * 12.0_f64.sqrt())
     }
 
     #[test]
