@@ -27,23 +27,24 @@ const ENTRIES: [[i32; 2]; 19] = [
     [2_070, 2_070],
 ];
 
-/// The power of a floor and a signal together, dB, and the signal's share of it, to 0.0001 dB and 0.0002; powers that differ by
-/// more than 39 dB are not added.
+/// The power of a floor and a signal together, dB, to 0.0006 dB, and the signal's share of it, to 0.0002. Powers that
+/// differ by more than 39 dB are not added.
 ///
-/// A fit takes this thousands of times for each place: the cubic polynomial between two entries takes a fraction of
-/// an exponential and a logarithm.
+/// A fit does this for each measurement, step and place: a polynomial between two entries of a table costs a fraction
+/// of an exponential and a logarithm.
 pub(super) fn added<T: Scalar>(floor: T, signal: T) -> (T, T) {
     let is_stronger = signal > floor;
     let stronger = if is_stronger { signal } else { floor };
-    let nepers = (signal - floor).abs() * T::from_f64(core::f64::consts::LN_10 / 10.0);
-    let (excess, share) = between(nepers);
+    let ratio = (signal - floor).abs() * T::from_f64(core::f64::consts::LN_10 / 10.0);
+    let (excess, share) = between(ratio);
     let level = stronger + excess * T::from_f64(10.0 / core::f64::consts::LN_10);
     (level, if is_stronger { T::ONE - share } else { share })
 }
 
-/// ln(1 + e⁻ᵃ) and 1/(1 + eᵃ) for a ≥ 0, by Hermite's interpolation of the first.
+/// ln(1 + e⁻ᵃ) and 1/(1 + eᵃ) for a ≥ 0: the cubic polynomial that has value and slope of both entries beside a
+/// (Hermite's interpolation), and its derivative.
 fn between<T: Scalar>(a: T) -> (T, T) {
-    // The nearest integer to a quarter less is the entry below.
+    // Half a spacing less, so that the nearest entry is the one below.
     let index = (a - T::from_binary(1, SPACING - 1)).to_binary(SPACING).max(0);
     let below = ENTRIES.get(index as usize..).unwrap_or_default();
     let &[[low, falls], [high, falls_then], ..] = below else { return (T::ZERO, T::ZERO) };
