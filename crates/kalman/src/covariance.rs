@@ -251,31 +251,54 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         sums.map(T::finish)
     }
 
-    /// P ← P − k·gᵀ for the gain k = g/S and g = P hᵀ, after [`Covariance::absorb_rounding_of`].
+    /// P ← P − k·gᵀ for the gain k = g/S and g = P hᵀ, for all entries but row and column `but` (N: for all). On
+    /// failure P is unchanged.
     #[inline(always)]
-    pub(crate) fn downdate(&mut self, gain: &[T; N], g: &[T; N]) {
+    pub(crate) fn downdate(&mut self, gain: &[T; N], g: &[T; N], but: usize) -> Result<(), Error> {
+        if T::SPREADS {
+            self.absorb_rounding();
+        } else {
+            self.downdate_variances(gain, g, but)?;
+        }
         for column in 0..N {
             // Among many states, some have nothing to do with the measurement, such as ambiguities of satellites out of
             // view.
-            if N >= MANY && g[column] == T::ZERO {
+            if column == but || N >= MANY && g[column] == T::ZERO {
                 continue;
             }
-            for row in column..N {
-                self.lower.data.0[column][row] -= taken(gain, g, row, column);
-            }
-        }
-    }
-
-    /// P ← P − k·gᵀ as in [`Covariance::downdate`], for all entries but row and column `i`.
-    #[inline(always)]
-    pub(crate) fn downdate_beside(&mut self, i: usize, gain: &[T; N], g: &[T; N]) {
-        for column in 0..N {
-            for row in column..N {
-                if row != i && column != i {
+            for row in column + usize::from(!T::SPREADS)..N {
+                if row != but {
                     self.lower.data.0[column][row] -= taken(gain, g, row, column);
                 }
             }
         }
+        Ok(())
+    }
+
+    /// The diagonal of [`Covariance::downdate`] in fixed point, where half a unit of the gain counts |g| times. An update
+    /// is refused if the gain or a variance is on a rail, which it would leave, or if a variance would become negative.
+    /// Floats need none of this: what is not finite stays so.
+    #[inline(always)]
+    fn downdate_variances(&mut self, gain: &[T; N], g: &[T; N], but: usize) -> Result<(), Error> {
+        let mut variances: [T; N] = core::array::from_fn(|index| self.lower.data.0[index][index]);
+        if !(T::all_finite(gain) && T::all_finite(&variances)) {
+            return Err(Error::NotFinite);
+        }
+        for index in 0..N {
+            let variance = &mut variances[index];
+            *variance += absorbed::<T, N>(*variance, g[index]);
+            let left = *variance - gain[index] * g[index];
+            if left < T::ZERO {
+                return Err(Error::NotPositive);
+            }
+            if index != but {
+                *variance = left;
+            }
+        }
+        for index in 0..N {
+            self.lower.data.0[index][index] = variances[index];
+        }
+        Ok(())
     }
 
     /// Scales row and column `i` < N by `factor`, their common entry once.
@@ -298,32 +321,6 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
             let variance = &mut self.lower.data.0[index][index];
             *variance += variance.rounding(Self::ROUNDINGS);
         }
-    }
-
-    /// [`Covariance::absorb_rounding`] before an update: in fixed point half a unit of the gain counts |g| times.
-    ///
-    /// An update in fixed point is refused if the gain or a variance is on a rail, which the update would leave, or if a
-    /// variance would become negative. Floats need none of this: what is not finite stays so.
-    #[inline(always)]
-    pub(crate) fn absorb_rounding_of(&mut self, gain: &[T; N], g: &[T; N]) -> Result<(), Error> {
-        if T::SPREADS {
-            self.absorb_rounding();
-            return Ok(());
-        }
-        let mut variances: [T; N] = core::array::from_fn(|index| self.lower.data.0[index][index]);
-        if !(T::all_finite(gain) && T::all_finite(&variances)) {
-            return Err(Error::NotFinite);
-        }
-        for index in 0..N {
-            variances[index] += absorbed::<T, N>(variances[index], g[index]);
-            if variances[index] < gain[index] * g[index] {
-                return Err(Error::NotPositive);
-            }
-        }
-        for index in 0..N {
-            self.lower.data.0[index][index] = variances[index];
-        }
-        Ok(())
     }
 
     /// P\[i, j\] for indices below N that the compiler does not know: one bounds check and no panic.

@@ -249,9 +249,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         let weights =
             Weights::for_update(innovation, self.covariance.known(index, index), variance)?;
         let cross = core::array::from_fn(|other| self.covariance.known(index, other));
-        let mut gain = [T::ZERO; N];
-        self.move_mean(&weights, &cross, &mut gain)?;
-        self.covariance.downdate_beside(index, &gain, &cross);
+        self.move_by(&weights, &cross, index)?;
         self.covariance.scale_component(index, weights.by_variance(variance));
         Ok(weights)
     }
@@ -282,21 +280,14 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     /// x ← x + k ν, P ← P − k h P.
     #[inline(always)]
     fn take_in(&mut self, weights: &Weights<T>, cross: &[T; N]) -> Result<Innovation<T>, Error> {
-        let mut gain = [T::ZERO; N];
-        self.move_mean(weights, cross, &mut gain)?;
-        self.covariance.downdate(&gain, cross);
+        self.move_by(weights, cross, N)?;
         Ok(weights.report())
     }
 
-    /// x ← x + k ν, the gain k, and the rounding of the update absorbed. (By reference: within a `Result` it would be copied.)
+    /// x ← x + k ν, P ← P − k h P, but for row and column `but` of P (N: for all). On failure nothing is changed.
     #[inline(always)]
-    fn move_mean(
-        &mut self,
-        weights: &Weights<T>,
-        cross: &[T; N],
-        gain: &mut [T; N],
-    ) -> Result<(), Error> {
-        let mut mean = *self.mean.as_array();
+    fn move_by(&mut self, weights: &Weights<T>, cross: &[T; N], but: usize) -> Result<(), Error> {
+        let (mut mean, mut gain) = (*self.mean.as_array(), [T::ZERO; N]);
         for i in 0..N {
             gain[i] = weights.by_variance(cross[i]);
             mean[i] += gain[i] * weights.innovation;
@@ -305,7 +296,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         if !T::all_finite(&mean) {
             return Err(Error::NotFinite);
         }
-        self.covariance.absorb_rounding_of(gain, cross)?;
+        self.covariance.downdate(&gain, cross, but)?;
         *self.mean.as_array_mut() = mean;
         Ok(())
     }
