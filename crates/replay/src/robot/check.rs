@@ -170,37 +170,3 @@ fn cut((count, metres): (usize, f64)) -> Finding {
         "look at the largest range that the radio or the logger can give",
     )
 }
-
-#[cfg(test)]
-mod tests {
-    use nalgebra::Vector3;
-
-    use super::*;
-
-    /// Whether three anchors with ranges that are 0.3 m too long are reported to contradict each other.
-    fn contradict(biases: Option<&[f64]>) -> bool {
-        let positions = vec![[0.0, 0.0, 2.0], [8.0, 0.0, 2.0], [4.0, 6.0, 2.0]];
-        let names = (0..positions.len()).map(|k| k.to_string()).collect();
-        let mut events = Vec::new();
-        for epoch in 0..200_i64 {
-            let turn = 0.05 * epoch as f64;
-            let tag = [4.0 + 2.0 * turn.cos(), 2.5 + 1.5 * turn.sin(), 1.0];
-            for (anchor, place) in positions.iter().enumerate() {
-                let time_us = 100_000 * epoch;
-                let metres = (Vector3::from(tag) - Vector3::from(*place)).norm() + 0.3;
-                events.push(Event::Range(Range { time_us, anchor, metres }));
-            }
-            events.push(Event::EpochEnd { time_us: 100_000 * epoch });
-        }
-        let anchors = Anchors { names, positions };
-        let parts = [events.as_slice()];
-        let findings = check(&anchors, parts, KnownHeight::Said(1.0), false, biases);
-        findings.iter().any(|finding| finding.reason == Some(Reason::Geometry))
-    }
-
-    #[test]
-    fn three_anchors_contradict_each_other_until_they_are_calibrated() {
-        assert!(contradict(None));
-        assert!(!contradict(Some(&[0.3; 3])));
-    }
-}
