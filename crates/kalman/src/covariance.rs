@@ -251,54 +251,33 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         sums.map(T::finish)
     }
 
-    /// P ← P − k·gᵀ for the gain k = g/S and g = P hᵀ, for all entries but row and column `but` (N: for all). On
-    /// failure P is unchanged.
+    /// P ← P − k·gᵀ for the gain k = g/S and g = P hᵀ.
     #[inline(always)]
-    pub(crate) fn downdate(&mut self, gain: &[T; N], g: &[T; N], but: usize) -> Result<(), Error> {
-        if T::SPREADS {
-            self.absorb_rounding();
-        } else {
-            self.downdate_variances(gain, g, but)?;
-        }
+    pub(crate) fn downdate(&mut self, gain: &[T; N], g: &[T; N]) {
+        self.absorb_rounding_of(g);
         for column in 0..N {
             // Among many states, some have nothing to do with the measurement, such as ambiguities of satellites out of
             // view.
-            if column == but || N >= MANY && g[column] == T::ZERO {
+            if N >= MANY && g[column] == T::ZERO {
                 continue;
             }
-            for row in column + usize::from(!T::SPREADS)..N {
-                if row != but {
+            for row in column..N {
+                self.lower.data.0[column][row] -= taken(gain, g, row, column);
+            }
+        }
+    }
+
+    /// P ← P − k·gᵀ as in [`Covariance::downdate`], for all entries but row and column `i`.
+    #[inline(always)]
+    pub(crate) fn downdate_beside(&mut self, i: usize, gain: &[T; N], g: &[T; N]) {
+        self.absorb_rounding_of(g);
+        for column in 0..N {
+            for row in column..N {
+                if row != i && column != i {
                     self.lower.data.0[column][row] -= taken(gain, g, row, column);
                 }
             }
         }
-        Ok(())
-    }
-
-    /// The diagonal of [`Covariance::downdate`] in fixed point, where half a unit of the gain counts |g| times. An update
-    /// is refused if the gain or a variance is on a rail, which it would leave, or if a variance would become negative.
-    /// Floats need none of this: what is not finite stays so.
-    #[inline(always)]
-    fn downdate_variances(&mut self, gain: &[T; N], g: &[T; N], but: usize) -> Result<(), Error> {
-        let mut variances: [T; N] = core::array::from_fn(|index| self.lower.data.0[index][index]);
-        if !(T::all_finite(gain) && T::all_finite(&variances)) {
-            return Err(Error::NotFinite);
-        }
-        for index in 0..N {
-            let variance = &mut variances[index];
-            *variance += absorbed::<T, N>(*variance, g[index]);
-            let left = *variance - gain[index] * g[index];
-            if left < T::ZERO {
-                return Err(Error::NotPositive);
-            }
-            if index != but {
-                *variance = left;
-            }
-        }
-        for index in 0..N {
-            self.lower.data.0[index][index] = variances[index];
-        }
-        Ok(())
     }
 
     /// Scales row and column `i` < N by `factor`, their common entry once.
@@ -321,6 +300,40 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
             let variance = &mut self.lower.data.0[index][index];
             *variance += variance.rounding(Self::ROUNDINGS);
         }
+    }
+
+    /// [`Covariance::absorb_rounding`] before an update: in fixed point half a unit of the gain counts |g| times.
+    #[inline(always)]
+    fn absorb_rounding_of(&mut self, g: &[T; N]) {
+        if T::SPREADS {
+            return self.absorb_rounding();
+        }
+        for index in 0..N {
+            let variance = &mut self.lower.data.0[index][index];
+            *variance += absorbed::<T, N>(*variance, g[index]);
+        }
+    }
+
+    /// Refuses an update in fixed point if the gain or a variance is on a rail, which the update would leave, or if a variance would
+    /// become negative. Floats need none of this: what is not finite stays so.
+    #[inline(always)]
+    pub(crate) fn can_lose(&self, gain: &[T; N], g: &[T; N]) -> Result<(), Error> {
+        if T::SPREADS {
+            return Ok(());
+        }
+        if !T::all_finite(gain) {
+            return Err(Error::NotFinite);
+        }
+        for index in 0..N {
+            let variance = self.lower.data.0[index][index];
+            if !variance.is_finite() {
+                return Err(Error::NotFinite);
+            }
+            if variance + absorbed::<T, N>(variance, g[index]) < gain[index] * g[index] {
+                return Err(Error::NotPositive);
+            }
+        }
+        Ok(())
     }
 
     /// P\[i, j\] for indices below N that the compiler does not know: one bounds check and no panic.

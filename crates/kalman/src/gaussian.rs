@@ -249,7 +249,9 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         let weights =
             Weights::for_update(innovation, self.covariance.known(index, index), variance)?;
         let cross = core::array::from_fn(|other| self.covariance.known(index, other));
-        self.move_by(&weights, &cross, index)?;
+        let mut gain = [T::ZERO; N];
+        self.move_mean(&weights, &cross, &mut gain)?;
+        self.covariance.downdate_beside(index, &gain, &cross);
         self.covariance.scale_component(index, weights.by_variance(variance));
         Ok(weights)
     }
@@ -280,14 +282,21 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     /// x ← x + k ν, P ← P − k h P.
     #[inline(always)]
     fn take_in(&mut self, weights: &Weights<T>, cross: &[T; N]) -> Result<Innovation<T>, Error> {
-        self.move_by(weights, cross, N)?;
+        let mut gain = [T::ZERO; N];
+        self.move_mean(weights, cross, &mut gain)?;
+        self.covariance.downdate(&gain, cross);
         Ok(weights.report())
     }
 
-    /// x ← x + k ν, P ← P − k h P, but for row and column `but` of P (N: for all). On failure nothing is changed.
+    /// x ← x + k ν, and the gain k. (By reference: within a `Result` it would be copied.)
     #[inline(always)]
-    fn move_by(&mut self, weights: &Weights<T>, cross: &[T; N], but: usize) -> Result<(), Error> {
-        let (mut mean, mut gain) = (*self.mean.as_array(), [T::ZERO; N]);
+    fn move_mean(
+        &mut self,
+        weights: &Weights<T>,
+        cross: &[T; N],
+        gain: &mut [T; N],
+    ) -> Result<(), Error> {
+        let mut mean = *self.mean.as_array();
         for i in 0..N {
             gain[i] = weights.by_variance(cross[i]);
             mean[i] += gain[i] * weights.innovation;
@@ -296,7 +305,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         if !T::all_finite(&mean) {
             return Err(Error::NotFinite);
         }
-        self.covariance.downdate(&gain, cross, but)?;
+        self.covariance.can_lose(gain, cross)?;
         *self.mean.as_array_mut() = mean;
         Ok(())
     }
