@@ -1,5 +1,7 @@
 use kestirim_scalar::Scalar;
 
+use super::sight::decibels;
+
 /// Distance of the entries of [`ENTRIES`], as a power of two.
 const SPACING: i32 = -1;
 /// The exponent of the entries' unit.
@@ -37,8 +39,7 @@ pub(super) fn added<T: Scalar>(floor: T, signal: T) -> (T, T) {
     let stronger = if is_stronger { signal } else { floor };
     let ratio = (signal - floor).abs() * T::from_f64(core::f64::consts::LN_10 / 10.0);
     let (excess, share) = between(ratio);
-    let level = stronger + excess * T::from_f64(10.0 / core::f64::consts::LN_10);
-    (level, if is_stronger { T::ONE - share } else { share })
+    (stronger + decibels(excess), if is_stronger { T::ONE - share } else { share })
 }
 
 /// ln(1 + e⁻ᵃ) and 1/(1 + eᵃ) for a ≥ 0: the cubic polynomial that has value and slope of both entries beside a
