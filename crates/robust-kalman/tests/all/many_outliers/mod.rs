@@ -7,7 +7,7 @@ use kestirim_kalman::{Covariance, Gaussian};
 use kestirim_robust_kalman::{Decision, Descent, Measurement, Reason, Robust, Scale};
 use kestirim_scalar::{Q12_20, Q16_16, Scalar};
 use nalgebra::SVector;
-use rand_distr::{Distribution, StandardNormal};
+use rand_distr::{Distribution, StandardUniform};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
 
@@ -31,7 +31,8 @@ impl<T: Scalar> Case<T> {
     /// A case in which the first `outliers` measurements of a shuffled order are off by 5 to 30 standard deviations.
     fn new(seed: u64, outliers: usize) -> Self {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-        let mut noise = move || -> f64 { StandardNormal.sample(&mut random) };
+        let mut uniform = move || -> f64 { StandardUniform.sample(&mut random) };
+        let mut noise = move || (0..6).map(|_| uniform() - 0.5).sum::<f64>() * 2_f64.sqrt();
         let variances: [f64; STATES] =
             std::array::from_fn(|index| if index == 3 { 100.0 } else { 0.05 });
         let (mut rows, mut innovations, mut measured) = (vec![], vec![], vec![]);
@@ -223,15 +224,12 @@ fn cost(seed: u64, outliers: usize) -> (u64, usize) {
 }
 
 #[test]
-fn twenty_outliers_among_eighty_cost_three_clean_updates() {
-    let ratios = (1..=40).map(|seed| {
+fn twenty_outliers_among_eighty_cost_less_than_three_clean_updates() {
+    for seed in 1..=40 {
         let ((clean, none), (operations, treated)) = (cost(seed, 0), cost(seed, 20));
         assert!(none == 0 && (18..=22).contains(&treated), "{none} and {treated} treated");
         let ratio = operations as f64 / clean as f64;
         println!("{treated} treated: {operations} operations, {ratio:.2} clean updates");
-        ratio
-    });
-    // One epoch in forty takes another pass.
-    let above: Vec<f64> = ratios.filter(|ratio| *ratio > 3.0).collect();
-    assert!(above.len() <= 1 && above.iter().all(|ratio| *ratio < 3.6), "{above:?} clean updates");
+        assert!(ratio <= 3.0, "seed {seed}: {ratio} clean updates");
+    }
 }
