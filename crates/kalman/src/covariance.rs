@@ -181,8 +181,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     /// [`Covariance::shear`] for indices known to be below N and different.
     ///
     /// Compiled for speed, each pair has instructions of its own; compiled for size, all pairs share one function.
-    #[cfg_attr(for_size, inline(never))]
-    #[cfg_attr(not(for_size), inline(always))]
+    #[inline(always)]
     pub(crate) fn shear_at(&mut self, i: usize, j: usize, a: T) {
         let cross = self.known(i, j);
         for other in 0..N {
@@ -251,10 +250,13 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         sums.map(T::finish)
     }
 
-    /// P ← P − k·gᵀ for the gain k = g/S and g = P hᵀ.
+    /// P ← P − k·gᵀ for the gain k = g/S and g = P hᵀ; in fixed point the variances become `left`.
     #[inline(always)]
-    pub(crate) fn downdate(&mut self, gain: &[T; N], g: &[T; N]) {
-        self.absorb_rounding_of(g);
+    pub(crate) fn downdate(&mut self, gain: &[T; N], g: &[T; N], left: &[T; N]) {
+        if !T::SPREADS {
+            return self.downdate_fixed(N, gain, g, left);
+        }
+        self.absorb_rounding();
         for column in 0..N {
             // Among many states, some have nothing to do with the measurement, such as ambiguities of satellites out of
             // view.
@@ -262,19 +264,48 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
                 continue;
             }
             for row in column..N {
-                self.lower.data.0[column][row] -= taken(gain, g, row, column);
+                self.lower.data.0[column][row] -= gain[row] * g[column];
             }
         }
     }
 
     /// P ← P − k·gᵀ as in [`Covariance::downdate`], for all entries but row and column `i`.
     #[inline(always)]
-    pub(crate) fn downdate_beside(&mut self, i: usize, gain: &[T; N], g: &[T; N]) {
-        self.absorb_rounding_of(g);
+    pub(crate) fn downdate_beside(&mut self, i: usize, gain: &[T; N], g: &[T; N], left: &[T; N]) {
+        if !T::SPREADS {
+            return self.downdate_fixed(i, gain, g, left);
+        }
+        self.absorb_rounding();
         for column in 0..N {
             for row in column..N {
                 if row != i && column != i {
-                    self.lower.data.0[column][row] -= taken(gain, g, row, column);
+                    self.lower.data.0[column][row] -= gain[row] * g[column];
+                }
+            }
+        }
+    }
+
+    /// P ← P − k·gᵀ in fixed point for all entries but row and column `but`, if there are such.
+    #[inline(always)]
+    fn downdate_fixed(&mut self, but: usize, gain: &[T; N], g: &[T; N], left: &[T; N]) {
+        // Half a unit of the gain is multiplied by g: where one is large, the smaller of two gives the smaller error.
+        let large = g.iter().any(|g| g.abs() > T::ONE);
+        for column in 0..N {
+            if column == but {
+                let variance = &mut self.lower.data.0[column][column];
+                *variance += Self::absorbed(*variance, g[column]);
+                continue;
+            }
+            self.lower.data.0[column][column] = left[column];
+            if N >= MANY && g[column] == T::ZERO {
+                continue;
+            }
+            for row in column + 1..N {
+                if row != but {
+                    let larger = large && g[column].abs() > g[row].abs();
+                    let (gain, g) =
+                        if larger { (gain[column], g[row]) } else { (gain[row], g[column]) };
+                    self.lower.data.0[column][row] -= gain * g;
                 }
             }
         }
@@ -302,22 +333,24 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         }
     }
 
-    /// [`Covariance::absorb_rounding`] before an update: in fixed point half a unit of the gain counts |g| times.
+    /// What rounding may take from a variance of fixed point in an update with this entry of g.
     #[inline(always)]
-    fn absorb_rounding_of(&mut self, g: &[T; N]) {
-        if T::SPREADS {
-            return self.absorb_rounding();
-        }
-        for index in 0..N {
-            let variance = &mut self.lower.data.0[index][index];
-            *variance += absorbed::<T, N>(*variance, g[index]);
-        }
+    fn absorbed(variance: T, g: T) -> T {
+        variance.rounding(Self::ROUNDINGS).max(g.abs().rounding(ROUNDINGS_OF_GAIN))
     }
 
-    /// Refuses an update in fixed point if the gain or a variance is on a rail, which the update would leave, or if a variance would
-    /// become negative. Floats need none of this: what is not finite stays so.
+    /// The variances that an update in fixed point leaves, with what its rounding may take from them: half a unit of the gain
+    /// counts |g| times. For floats, `left` stays as it is: what is not finite stays so, and is found in the mean.
+    ///
+    /// # Errors
+    /// If the gain or a variance is on a rail, which the update would leave, or if a variance would become negative.
     #[inline(always)]
-    pub(crate) fn can_lose(&self, gain: &[T; N], g: &[T; N]) -> Result<(), Error> {
+    pub(crate) fn variances_left(
+        &self,
+        gain: &[T; N],
+        g: &[T; N],
+        left: &mut [T; N],
+    ) -> Result<(), Error> {
         if T::SPREADS {
             return Ok(());
         }
@@ -329,7 +362,8 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
             if !variance.is_finite() {
                 return Err(Error::NotFinite);
             }
-            if variance + absorbed::<T, N>(variance, g[index]) < gain[index] * g[index] {
+            left[index] = variance + Self::absorbed(variance, g[index]) - gain[index] * g[index];
+            if left[index] < T::ZERO {
                 return Err(Error::NotPositive);
             }
         }
@@ -364,22 +398,5 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     }
 }
 
-/// What rounding may take from a variance of fixed point in an update with this entry of g.
-#[inline(always)]
-fn absorbed<T: Scalar, const N: usize>(variance: T, g: T) -> T {
-    variance.rounding(Covariance::<T, N>::ROUNDINGS).max(g.abs().rounding(ROUNDINGS_OF_GAIN))
-}
-
 /// Roundings of the gain to absorb in fixed point. Errors of many entries are as often positive as negative.
 const ROUNDINGS_OF_GAIN: u16 = 4;
-
-/// An entry of the symmetric k·gᵀ: gain\[row\]·g\[column\] or gain\[column\]·g\[row\]. In fixed point, half a unit of the gain is
-/// multiplied by g: the smaller g gives the smaller error.
-#[inline(always)]
-fn taken<T: Scalar, const N: usize>(gain: &[T; N], g: &[T; N], row: usize, column: usize) -> T {
-    if T::SPREADS || g[column].abs() <= g[row].abs() {
-        gain[row] * g[column]
-    } else {
-        gain[column] * g[row]
-    }
-}

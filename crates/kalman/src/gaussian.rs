@@ -249,9 +249,9 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         let weights =
             Weights::for_update(innovation, self.covariance.known(index, index), variance)?;
         let cross = core::array::from_fn(|other| self.covariance.known(index, other));
-        let mut gain = [T::ZERO; N];
-        self.move_mean(&weights, &cross, &mut gain)?;
-        self.covariance.downdate_beside(index, &gain, &cross);
+        let (mut gain, mut left) = ([T::ZERO; N], [T::ZERO; N]);
+        self.move_mean(&weights, &cross, &mut gain, &mut left)?;
+        self.covariance.downdate_beside(index, &gain, &cross, &left);
         self.covariance.scale_component(index, weights.by_variance(variance));
         Ok(weights)
     }
@@ -282,19 +282,20 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
     /// x ← x + k ν, P ← P − k h P.
     #[inline(always)]
     fn take_in(&mut self, weights: &Weights<T>, cross: &[T; N]) -> Result<Innovation<T>, Error> {
-        let mut gain = [T::ZERO; N];
-        self.move_mean(weights, cross, &mut gain)?;
-        self.covariance.downdate(&gain, cross);
+        let (mut gain, mut left) = ([T::ZERO; N], [T::ZERO; N]);
+        self.move_mean(weights, cross, &mut gain, &mut left)?;
+        self.covariance.downdate(&gain, cross, &left);
         Ok(weights.report())
     }
 
-    /// x ← x + k ν, and the gain k. (By reference: within a `Result` it would be copied.)
+    /// x ← x + k ν, the gain k, and in fixed point the variances left. (By reference: within a `Result` they would be copied.)
     #[inline(always)]
     fn move_mean(
         &mut self,
         weights: &Weights<T>,
         cross: &[T; N],
         gain: &mut [T; N],
+        left: &mut [T; N],
     ) -> Result<(), Error> {
         let mut mean = *self.mean.as_array();
         for i in 0..N {
@@ -305,7 +306,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         if !T::all_finite(&mean) {
             return Err(Error::NotFinite);
         }
-        self.covariance.can_lose(gain, cross)?;
+        self.covariance.variances_left(gain, cross, left)?;
         *self.mean.as_array_mut() = mean;
         Ok(())
     }

@@ -45,6 +45,20 @@ impl<T: Scalar> Adaptive<T> {
     const PATIENCE_US: u32 = 500_000;
     /// The longest time for which the bound grows (µs).
     const IMPATIENCE_US: u32 = 10_000_000;
+
+    /// The bound from the smallest statistic and the time since a stance (µs): no less than `floor`.
+    #[inline]
+    fn bound(&self, floor: T, minimum: T, since: u32) -> T {
+        let mut bound = floor;
+        if self.minimum.is_full() {
+            bound = bound.max(minimum * T::from_f64(Self::FACTOR));
+        }
+        if since > Self::PATIENCE_US {
+            let waited = (since - Self::PATIENCE_US).min(Self::IMPATIENCE_US);
+            bound += bound * T::from_micro(3 * waited as i32);
+        }
+        bound
+    }
 }
 
 impl<T: Scalar> StanceDetector<T> for Adaptive<T> {
@@ -56,15 +70,7 @@ impl<T: Scalar> StanceDetector<T> for Adaptive<T> {
         let since = motion.time_us.wrapping_sub(last_us);
         self.swing.push(motion.time_us, statistic);
         let floor = self.swing.share() * T::from_f64(Self::FLOOR);
-        let mut bound = floor;
-        if self.minimum.is_full() {
-            bound = bound.max(minimum * T::from_f64(Self::FACTOR));
-        }
-        if since > Self::PATIENCE_US {
-            let waited = (since - Self::PATIENCE_US).min(Self::IMPATIENCE_US);
-            bound += bound * T::from_micro(3 * waited as i32);
-        }
-        let stance = statistic < bound;
+        let stance = statistic < floor || statistic < self.bound(floor, minimum, since);
         if stance {
             self.last_stance_us = Some(motion.time_us);
         }

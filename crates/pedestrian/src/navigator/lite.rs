@@ -47,14 +47,13 @@ impl<T: Scalar> Navigator<T> for Lite<T> {
     #[inline]
     fn propagate(&mut self, step: &Step<T>, stance: bool) {
         self.strapdown.integrate(self.ahrs.orientation(), step);
-        if stance {
-            self.until_gravity = self.until_gravity.wrapping_sub(1) % Self::GRAVITY_EVERY;
-            let gravity =
-                (self.until_gravity == 0).then(|| step.force_g * T::from_f64(STANDARD_GRAVITY));
+        self.until_gravity =
+            if stance { self.until_gravity.wrapping_sub(1) % Self::GRAVITY_EVERY } else { 1 };
+        if self.until_gravity == 0 {
+            let force = step.force_g * T::from_f64(STANDARD_GRAVITY);
             // Steps are checked: bounded rates over at most a fifth of a second.
-            let _ = self.ahrs.update(&step.angular_rate, gravity.as_ref(), step.interval);
+            let _ = self.ahrs.update(&step.angular_rate, Some(&force), step.interval);
         } else {
-            self.until_gravity = 1;
             self.ahrs.turn_in_body(&step.turn);
         }
         self.drifted = (self.drifted + step.interval).min(T::from_f64(Self::LONGEST_SWING));

@@ -37,7 +37,7 @@ impl<const FRAC: u32> FixedDivisor<FRAC> {
     pub(super) fn divide(self, dividend: Fixed<FRAC>) -> Fixed<FRAC> {
         let Some(half) = self.shift.checked_sub(1) else { return over_zero(dividend) };
         let product = unsigned_product(dividend.to_bits().unsigned_abs(), self.reciprocal);
-        with_sign(((product >> half) + 1) >> 1, (dividend.to_bits() < 0) != self.negative)
+        with_sign((shifted(product, half) + 1) >> 1, (dividend.to_bits() < 0) != self.negative)
     }
 }
 
@@ -51,7 +51,7 @@ impl<const FRAC: u32> Fixed<FRAC> {
         }
         let negative = (self.0 < 0) != prepared.negative;
         let (dividend, divisor) = (self.0.unsigned_abs(), divisor.0.unsigned_abs());
-        let estimate = unsigned_product(dividend, prepared.reciprocal) >> prepared.shift;
+        let estimate = shifted(unsigned_product(dividend, prepared.reciprocal), prepared.shift);
         let Ok(mut quotient) = u32::try_from(estimate) else {
             return with_sign(estimate, negative);
         };
@@ -63,6 +63,18 @@ impl<const FRAC: u32> Fixed<FRAC> {
             quotient = quotient.saturating_add(1);
         }
         with_sign(u64::from(quotient) + u64::from(2 * rest >= u64::from(divisor)), negative)
+    }
+}
+
+/// value >> by, for 1 ≤ by ≤ 63. By words: shifts of 64 bits by a variable are function calls on small targets.
+#[inline(always)]
+fn shifted(value: u64, by: u32) -> u64 {
+    let (high, low) = ((value >> 32) as u32, value as u32);
+    if by < 32 {
+        let lower = high.wrapping_shl(32 - by) | low.wrapping_shr(by);
+        (u64::from(high.wrapping_shr(by)) << 32) | u64::from(lower)
+    } else {
+        u64::from(high.wrapping_shr(by - 32))
     }
 }
 
@@ -109,6 +121,19 @@ mod tests {
         let exact = (1_u64 << 63) / u64::from(m);
         let ours = u64::from(reciprocal(m));
         assert!(ours <= exact && exact - ours <= 2, "1/{m}: {ours}, not {exact}");
+    }
+
+    #[test]
+    fn words_are_shifted_like_a_whole() {
+        for by in 1..=63 {
+            for bit in 0..64 {
+                let values =
+                    [1 << bit, (1 << bit) - 1, u64::MAX >> bit, 0x5555_5555_5555_5555 << bit];
+                for value in values {
+                    assert_eq!(shifted(value, by), value >> by, "{value} by {by}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -31,7 +31,8 @@ pub(super) fn unsigned_high(a: u32, b: u32) -> u32 {
 }
 
 /// The exact product by halves: Warren, Hacker's Delight (2nd ed.), 8–2.
-#[inline(always)]
+#[cfg_attr(for_size, inline(never))]
+#[cfg_attr(not(for_size), inline(always))]
 fn product_by_halves(a: i32, b: i32) -> i64 {
     let (a_low, a_high) = (a & 0xFFFF, a >> 16);
     let (b_low, b_high) = (b & 0xFFFF, b >> 16);
@@ -58,10 +59,11 @@ impl<const FRAC: u32> Fixed<FRAC> {
     /// Converts a value with 2·FRAC fractional bits: rounded once, saturating.
     #[inline(always)]
     pub(super) fn narrowed(sum: i64) -> Self {
-        let rounded = ((sum >> (FRAC - 1)) + 1) >> 1;
+        // Where this wraps around, the result does not fit, and the sum knows its side.
+        let rounded = sum.wrapping_add(1 << (FRAC - 1)) >> FRAC;
         let (low, high) = (rounded as i32, (rounded >> 32) as i32);
         // The result fits if the upper half is a sign extension.
-        Self(if high == low >> 31 { low } else { (high >> 31) ^ i32::MAX })
+        Self(if high == low >> 31 { low } else { (sum >> 63) as i32 ^ i32::MAX })
     }
 
     /// Converts a value with `from` fractional bits: rounded, saturating.
@@ -85,6 +87,51 @@ mod tests {
             prop_assert_eq!(product_by_halves(a, b), i64::from(a) * i64::from(b));
             let (a, b) = (a as u32, b as u32);
             prop_assert_eq!(unsigned_product_by_halves(a, b), u64::from(a) * u64::from(b));
+        }
+    }
+
+    fn check_narrowed<const FRAC: u32>(sum: i64) {
+        let exact = (i128::from(sum) + (1 << (FRAC - 1))) >> FRAC;
+        let nearest = exact.clamp(i128::from(i32::MIN), i128::from(i32::MAX));
+        assert_eq!(i128::from(Fixed::<FRAC>::narrowed(sum).0), nearest, "{sum} in Q{FRAC}");
+    }
+
+    fn check_all_narrowed(sum: i64) {
+        check_narrowed::<1>(sum);
+        check_narrowed::<16>(sum);
+        check_narrowed::<20>(sum);
+        check_narrowed::<24>(sum);
+        check_narrowed::<30>(sum);
+    }
+
+    proptest! {
+        #[test]
+        fn sums_are_rounded_once(sum in any::<i64>(), down in 0_u32..63) {
+            check_all_narrowed(sum >> down);
+        }
+    }
+
+    #[test]
+    fn sums_are_rounded_once_at_the_edges() {
+        for bit in 0..63 {
+            for off in -2..=2 {
+                check_all_narrowed((1_i64 << bit) + off);
+                check_all_narrowed((-1_i64 << bit) - off);
+            }
+        }
+        for off in 0..3 {
+            check_all_narrowed(i64::MAX - off);
+            check_all_narrowed(i64::MIN + off);
+        }
+        for frac in [1, 16, 20, 24, 30] {
+            // Half a unit around both rails.
+            for rail in [i64::from(i32::MAX), i64::from(i32::MIN)] {
+                for off in -2..=2 {
+                    let half = 1_i64 << (frac - 1);
+                    check_all_narrowed((rail << frac) + half + off);
+                    check_all_narrowed((rail << frac) - half + off);
+                }
+            }
         }
     }
 
