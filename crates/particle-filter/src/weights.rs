@@ -59,6 +59,7 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
     /// `count` equal weights.
     #[inline]
     pub(crate) fn equal(count: usize) -> Self {
+        const { assert!(N as u64 <= T::MAX_WHOLE as u64, "the numbers hold the sum of N weights") };
         let mut weights = Self { log: [T::ZERO; N], count: 0, sum: T::ZERO, square_sum: T::ZERO };
         weights.equalise(count);
         weights

@@ -27,6 +27,10 @@ macro_rules! impl_scalar_for_float {
             const EPSILON: Self = $float::EPSILON;
             const MIN: Self = $float::MIN;
             const MAX: Self = $float::MAX;
+            const MAX_WHOLE: u32 = match 1_u32.checked_shl($float::MANTISSA_DIGITS) {
+                Some(whole) => whole,
+                None => u32::MAX,
+            };
             const SPREADS: bool = true;
 
             #[inline(always)]

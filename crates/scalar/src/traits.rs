@@ -47,6 +47,8 @@ pub trait Scalar:
     const MIN: Self;
     /// The largest value, the upper rail of fixed point.
     const MAX: Self;
+    /// The largest whole number up to which all are exact: a sum of as many ones neither saturates nor is rounded.
+    const MAX_WHOLE: u32;
     /// Whether numbers that are not finite make sums and products not finite either. True for floats; fixed point may
     /// leave a rail.
     const SPREADS: bool = false;

@@ -5,6 +5,7 @@ use super::conclusion::Source;
 use super::evidence::Evidence;
 use super::raw::Raw;
 use super::rest::{Rest, length_of, median};
+use crate::clock::refuse_times_of_day;
 use crate::error::Error;
 use crate::unit::{Quantity, STANDARD_GRAVITY, Unit, counts};
 
@@ -51,6 +52,10 @@ pub(crate) fn decide(
     let usual = median(
         raw.windows(2).map(|pair| pair[1].time - pair[0].time).filter(|&step| step > 0.0).collect(),
     );
+    if !matches!(time, Claim::Said(_, Source::Option)) {
+        let all: Vec<_> = raw.iter().map(|sample| sample.time).collect();
+        refuse_times_of_day(&all, OPTIONS[2])?;
+    }
     let times = times(time, usual, raw.len())?;
     let evidence = Evidence::find(raw, usual, &times);
     let (force, force_source) = force(acceleration, evidence.rest.as_ref(), raw)?;

@@ -52,6 +52,7 @@ impl<const FRAC: u32> Scalar for Fixed<FRAC> {
     const EPSILON: Self = Self(1);
     const MIN: Self = Self(i32::MIN);
     const MAX: Self = Self(i32::MAX);
+    const MAX_WHOLE: u32 = i32::MAX as u32 >> FRAC;
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {

@@ -155,6 +155,22 @@ fn double_precision_functions_keep_their_bounds() {
 }
 
 #[test]
+fn whole_numbers_are_exact_up_to_the_largest() {
+    fn check<T: Scalar>() {
+        let whole = i32::try_from(T::MAX_WHOLE).unwrap_or(i32::MAX);
+        let largest = T::from_binary(whole, 0);
+        assert!(largest.is_finite() && largest.to_binary(0) == whole);
+        assert_eq!(largest - (largest - T::ONE), T::ONE);
+    }
+    check::<f32>();
+    check::<f64>();
+    check::<Q16_16>();
+    check::<Q12_20>();
+    assert_eq!(f32::MAX_WHOLE as f32 + 1.0, f32::MAX_WHOLE as f32);
+    assert_eq!(Q12_20::from_binary(Q12_20::MAX_WHOLE as i32 + 1, 0), Q12_20::MAX);
+}
+
+#[test]
 fn numbers_become_integers_and_come_back() {
     fn check<T: Scalar>() {
         for value in [0, 1, -1, 77, -1_234, 2_047] {

@@ -80,6 +80,7 @@ impl Scalar for Counted {
     const SPREADS: bool = true;
     const MIN: Self = Self(f64::MIN);
     const MAX: Self = Self(f64::MAX);
+    const MAX_WHOLE: u32 = u32::MAX;
 
     fn from_f64(value: f64) -> Self {
         Self(value)
