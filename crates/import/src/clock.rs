@@ -128,7 +128,8 @@ mod tests {
             assert!(refused(&of_day(43_170, 120, rate)), "{rate}");
             // Over a minute's end alone, an hour's and a day's.
             assert!(refused(&of_day(43_190 + 60, 20, rate)));
-            let thousandths = of_day(32_330, 600, rate).iter().map(|t| (t * 1e3).round());
+            let thousandths =
+                of_day(32_330, 600, rate).into_iter().map(|time| (time * 1e3).round());
             assert!(refused(&thousandths.collect::<Vec<_>>()));
         }
         // With a gap in which some minutes end, but not all.
