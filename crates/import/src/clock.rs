@@ -12,7 +12,7 @@ const LONGEST_OF_DAY: f64 = 10.0;
 
 /// Refuses hours, minutes and seconds in one number, such as 115959.5 before 120000, as NMEA writes them: taken for seconds, each
 /// minute would last for a hundred. No time has more than 59 minutes or 60 seconds then, and where a minute
-/// ends, the next time is 40 more than a usual step away. Thousandths of seconds may follow without a sign.
+/// ends, the next time is 40 more than a step away. Thousandths of seconds may follow without a sign.
 ///
 /// # Errors
 /// [`Error::Undecided`] with the times at the end of a minute.
@@ -29,7 +29,7 @@ pub(crate) fn refuse_times_of_day(times: &[f64], option: &str) -> Result<(), Err
         let ends = |pair: &&[f64]| {
             let [before, after] = [pair[0], pair[1]].map(|time| time / thousandths);
             let more = after - before - 40.0;
-            (before / 100.0).floor() < (after / 100.0).floor() && more > 0.0 && more <= longest
+            (before / 100.0).floor() < (after / 100.0).floor() && more > 0.0 && more < 1.5 * longest
         };
         if let Some(pair) = times.windows(2).find(ends)
             && times.iter().copied().all(of_day)
