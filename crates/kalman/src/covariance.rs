@@ -180,7 +180,8 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
 
     /// [`Covariance::shear`] for indices known to be below N and different.
     ///
-    /// Compiled for speed, each pair has instructions of its own; compiled for size, all pairs share one function.
+    /// Each pair has instructions of its own, for size, too: a function that all pairs share takes more flash, stack and time for
+    /// four states, and saves 2 to 4 % of the flash for the nine of a foot.
     #[inline(always)]
     pub(crate) fn shear_at(&mut self, i: usize, j: usize, a: T) {
         let cross = self.known(i, j);

@@ -30,7 +30,7 @@ pub(super) fn unsigned_high(a: u32, b: u32) -> u32 {
     (unsigned_product(a, b) >> 32) as u32
 }
 
-/// The exact product by halves: Warren, Hacker's Delight (2nd ed.), 8–2.
+/// The exact product by halves: Warren, Hacker's Delight (2nd ed.), 8–2. Compiled for size, all products share it.
 #[cfg_attr(for_size, inline(never))]
 #[cfg_attr(not(for_size), inline(always))]
 fn product_by_halves(a: i32, b: i32) -> i64 {
@@ -59,7 +59,7 @@ impl<const FRAC: u32> Fixed<FRAC> {
     /// Converts a value with 2·FRAC fractional bits: rounded once, saturating.
     #[inline(always)]
     pub(super) fn narrowed(sum: i64) -> Self {
-        // Where this wraps around, the result does not fit, and the sum knows its side.
+        // Where this wraps around, the result does not fit: its rail is that of the sum's sign.
         let rounded = sum.wrapping_add(1 << (FRAC - 1)) >> FRAC;
         let (low, high) = (rounded as i32, (rounded >> 32) as i32);
         // The result fits if the upper half is a sign extension.
