@@ -75,6 +75,17 @@ impl Health {
         self.bits & reason.bit() != 0
     }
 
+    /// The reasons as bits, in a form that is kept from version to version: for telemetry and storage.
+    pub const fn bits(self) -> u16 {
+        self.bits
+    }
+
+    /// The health with these [bits](Self::bits); `None` if one of them is a reason of a later version.
+    pub const fn from_bits(bits: u16) -> Option<Self> {
+        let unknown = bits >> Reason::ALL.len();
+        if unknown == 0 { Some(Self { bits }) } else { None }
+    }
+
     /// The state of the worst reason.
     pub fn state(self) -> State {
         self.reasons().map(Reason::state).max().unwrap_or_default()
@@ -134,7 +145,9 @@ mod tests {
     fn each_reason_has_a_bit_of_its_own() {
         let all: Health = Reason::ALL.into_iter().collect();
         assert!(all.reasons().eq(Reason::ALL));
-        assert_eq!(all.bits.count_ones() as usize, Reason::ALL.len());
+        assert_eq!(all.bits().count_ones() as usize, Reason::ALL.len());
+        assert_eq!(Health::from_bits(all.bits()), Some(all));
+        assert_eq!(Health::from_bits(all.bits() + 1), None);
     }
 
     #[cfg(feature = "serde")]

@@ -4,7 +4,7 @@ use ::serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
 use ::serde::ser::{Serialize, SerializeStruct, Serializer};
 use core::fmt;
 
-use crate::{Health, Reason};
+use crate::Health;
 
 impl Serialize for Health {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -23,10 +23,9 @@ impl<'de> Deserialize<'de> for Health {
         if deserializer.is_human_readable() {
             return Object::deserialize(deserializer).map(|object| object.reasons.0);
         }
-        let bits = u16::deserialize(deserializer)?;
-        let health: Self = Reason::ALL.into_iter().filter(|it| bits & it.bit() != 0).collect();
         // Reasons stored by a later version are refused, not partly read.
-        if health.bits == bits { Ok(health) } else { Err(D::Error::custom("an unknown reason")) }
+        Self::from_bits(u16::deserialize(deserializer)?)
+            .ok_or_else(|| D::Error::custom("an unknown reason"))
     }
 }
 

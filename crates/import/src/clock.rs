@@ -11,32 +11,34 @@ const SAMPLE: usize = 4000;
 const LONGEST_OF_DAY: f64 = 10.0;
 
 /// Refuses hours, minutes and seconds in one number, such as 115959.5 before 120000, as NMEA writes them: taken for seconds, each
-/// minute would last for a hundred. No time has more than 59 minutes or 60 seconds then, and where a minute
-/// ends, the next time is 40 more than a step away. Thousandths of seconds may follow without a sign.
+/// minute would last for a hundred. No time has more than 59 minutes or 60 seconds then, and where a minute or an hour
+/// ends, the next time is 40 or 4040 more than a step away. Thousandths of seconds may follow without a sign.
 ///
 /// # Errors
-/// [`Error::Undecided`] with the times at the end of a minute.
+/// [`Error::Undecided`] with the times at the end of a minute or an hour.
 pub(crate) fn refuse_times_of_day(times: &[f64], option: &str) -> Result<(), Error> {
     for thousandths in [1.0, 1e3] {
-        let of_day = |time: f64| {
+        let of_day = |time: &f64| {
             let time = time / thousandths;
             let (minutes, seconds) = ((time / 100.0).floor(), time.rem_euclid(100.0));
             (0.0..240_000.0).contains(&time) && minutes % 100.0 < 60.0 && seconds < 61.0
         };
+        if !times.iter().all(of_day) {
+            continue;
+        }
         let steps = times.windows(2).map(|pair| (pair[1] - pair[0]) / thousandths);
-        let steps: Vec<_> = steps.filter(|step| *step > 0.0 && *step < LONGEST_OF_DAY).collect();
-        let Some(&longest) = steps.iter().max_by(|a, b| a.total_cmp(b)) else { continue };
+        let steps = steps.filter(|step| *step > 0.0 && *step < LONGEST_OF_DAY);
+        let longest = steps.fold(0.0, f64::max);
         let ends = |pair: &&[f64]| {
             let [before, after] = [pair[0], pair[1]].map(|time| time / thousandths);
-            let more = after - before - 40.0;
-            (before / 100.0).floor() < (after / 100.0).floor() && more > 0.0 && more < 1.5 * longest
+            let step = |skipped: f64| after - before - skipped;
+            let is_step = |step: f64| step > 0.0 && step < 1.5 * longest;
+            (before / 100.0).floor() < (after / 100.0).floor()
+                && [40.0, 4040.0].map(step).into_iter().any(is_step)
         };
-        if let Some(pair) = times.windows(2).find(ends)
-            && times.iter().copied().all(of_day)
-        {
+        if let Some([before, after]) = times.windows(2).find(ends) {
             let problem = format!(
-                "expected times in s, found hours, minutes and seconds in one number ({} before {}): write them with colons",
-                pair[0], pair[1]
+                "expected times in s, found hours, minutes and seconds in one number ({before} before {after}): write them with colons"
             );
             return Err(Error::undecided(problem, option));
         }
@@ -126,8 +128,9 @@ mod tests {
         };
         for rate in [1, 10, 100] {
             assert!(refused(&of_day(43_170, 120, rate)), "{rate}");
-            // Over a minute's end alone, an hour's and a day's.
-            assert!(refused(&of_day(43_190 + 60, 20, rate)));
+            // Over the end of one minute, and of one hour.
+            assert!(refused(&of_day(43_250, 20, rate)));
+            assert!(refused(&of_day(43_190, 20, rate)));
             let thousandths =
                 of_day(32_330, 600, rate).into_iter().map(|time| (time * 1e3).round());
             assert!(refused(&thousandths.collect::<Vec<_>>()));

@@ -12,7 +12,8 @@ mod transmitter;
 pub use error::Error;
 pub use frame::{CAPACITY, Origin, VERSION, VERSION_OF_FLEETS, encode, encode_from};
 pub use message::{
-    Flight, Footprint, GlobalPosition, Health, Imu, Message, PathLoss, Position, Range, State,
+    EstimateHealth, Flight, Footprint, GlobalPosition, Health, Imu, Message, PathLoss, Position,
+    Range, State,
 };
 pub use receiver::{Counts, Frame, Frames, Receiver};
 pub use sequence::{Order, RESUMED_AFTER};

@@ -42,7 +42,8 @@ impl Message {
             | Self::GlobalPosition(_)
             | Self::State(_)
             | Self::Footprint(_)
-            | Self::Health(_) => None,
+            | Self::Health(_)
+            | Self::EstimateHealth(_) => None,
         }
     }
 }
@@ -137,5 +138,13 @@ messages! {
         rejected: u32,
         /// Readings that a driver did not deliver.
         failed: u32,
+    }
+
+    /// Whether the sender's estimate can be relied upon.
+    EstimateHealth {
+        /// Time (µs, the sender's clock).
+        time_us: u64,
+        /// The reasons why it cannot, as bits (`kestirim_health::Health::bits`); 0 if it can.
+        reasons: u16,
     }
 }

@@ -1,9 +1,9 @@
 //! Frames on a line that loses, flips and invents bytes.
 
 use kestirim_telemetry::{
-    CAPACITY, Counts, Error, Flight, Footprint, Frame, GlobalPosition, Health, Imu, Message, Order,
-    Origin, PathLoss, Position, Range, Receiver, State, VERSION, VERSION_OF_FLEETS, encode,
-    encode_from,
+    CAPACITY, Counts, Error, EstimateHealth, Flight, Footprint, Frame, GlobalPosition, Health, Imu,
+    Message, Order, Origin, PathLoss, Position, Range, Receiver, State, VERSION, VERSION_OF_FLEETS,
+    encode, encode_from,
 };
 use proptest::array::{uniform2, uniform3, uniform4};
 use proptest::collection::vec;
@@ -54,6 +54,8 @@ fn message() -> impl Strategy<Value = Message> {
         (time(), any::<[u32; 3]>()).prop_map(|(time_us, [accepted, rejected, failed])| {
             Health { time_us, accepted, rejected, failed }.into()
         }),
+        (time(), any::<u16>())
+            .prop_map(|(time_us, reasons)| EstimateHealth { time_us, reasons }.into()),
     ]
 }
 
@@ -93,7 +95,8 @@ fn the_longest_frame_fills_the_capacity() {
     assert_eq!(of_device(u32::MAX, u32::MAX, u32::MAX, &longest).len(), CAPACITY);
     assert_eq!(CAPACITY, 60, "the README counts the same");
     assert_eq!(frame(&longest, u16::MAX).len(), CAPACITY - 10, "of version 1");
-    assert_eq!(frame(&health(0), 0).len(), CAPACITY - 45, "the shortest message has 5 bytes");
+    let shortest = EstimateHealth { time_us: 0, reasons: 0 }.into();
+    assert_eq!(frame(&shortest, 0).len(), CAPACITY - 47, "the shortest message has 3 bytes");
 }
 
 #[test]

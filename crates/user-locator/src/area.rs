@@ -156,4 +156,9 @@ impl<T: Scalar, C: Likelihood<T>, const N: usize> Likelihood<T> for Within<'_, T
             T::ZERO.ln()
         }
     }
+
+    #[inline(always)]
+    fn log_likelihood_again(&self, measurement: &Measurement<T>, user: [T; 2]) -> T {
+        self.channel.log_likelihood_again(measurement, user)
+    }
 }

@@ -4,7 +4,7 @@ use kestirim_particle_filter::{Likelihood as _, Moments, PointMass, Region, Upda
 use kestirim_scalar::Scalar;
 
 use crate::level_step::health;
-use crate::seen::Seen;
+use crate::seen::{Seen, SeenAgain};
 use crate::{Error, Health};
 
 /// Points whose log-density is this far below the largest are dropped when the lattice is refined.
@@ -66,7 +66,8 @@ where
     /// # Errors
     /// [`Error::Filter`] if nothing in the region explains it; nothing is changed.
     pub fn measure(&mut self, measurement: &Measurement<T>) -> Result<Update<T>, Error> {
-        let update = self.posterior.weigh(&Seen { channel: &self.channel, measurement })?;
+        let update =
+            weigh(&mut self.posterior, &self.channel, measurement, self.measurements.is_empty())?;
         if self.measurements.push(*measurement).is_err() {
             self.unstored = self.unstored.saturating_add(1);
         }
@@ -83,9 +84,9 @@ where
                 return;
             }
             let Some(mut finer) = self.posterior.finer(T::from_f64(DEPTH)) else { return };
-            for measurement in &self.measurements {
+            for (index, measurement) in self.measurements.iter().enumerate() {
                 // Measurement by measurement over all points, which vectorises, rather than point by point.
-                if finer.weigh(&Seen { channel: &self.channel, measurement }).is_err() {
+                if weigh(&mut finer, &self.channel, measurement, index == 0).is_err() {
                     // If it cannot be refined, the present lattice is still a posterior.
                     return;
                 }
@@ -135,6 +136,18 @@ where
     }
 }
 
+/// Weighs the points of a lattice by a measurement. Points that the first one has shown to be impossible stay so.
+#[inline(always)]
+fn weigh<T: Scalar, C: Likelihood<T>, const L: usize, const D: usize>(
+    lattice: &mut PointMass<T, D, L>,
+    channel: &C,
+    measurement: &Measurement<T>,
+    is_first: bool,
+) -> Result<Update<T>, kestirim_particle_filter::Error> {
+    let seen = Seen { channel, measurement };
+    if is_first { lattice.weigh(&seen) } else { lattice.weigh(&SeenAgain(seen)) }
+}
+
 /// The logarithm of the posterior density, up to a constant.
 #[inline(always)]
 fn log_posterior<T: Scalar, C: Likelihood<T>, const D: usize>(
@@ -142,9 +155,11 @@ fn log_posterior<T: Scalar, C: Likelihood<T>, const D: usize>(
     measurements: &[Measurement<T>],
     state: &[T; D],
 ) -> T {
-    let mut sum = T::ZERO;
-    for measurement in measurements {
-        sum += Seen { channel, measurement }.logarithm(*state);
+    let mut measurements = measurements.iter().map(|measurement| Seen { channel, measurement });
+    let Some(first) = measurements.next() else { return T::ZERO };
+    let mut sum = first.logarithm(*state);
+    for seen in measurements {
+        sum += SeenAgain(seen).logarithm(*state);
     }
     sum
 }

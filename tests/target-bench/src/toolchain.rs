@@ -10,6 +10,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 
+use crate::form::{SHORT, is_short};
 use crate::target::Target;
 
 /// The environment variables that a build inherits. All others, above all those that cargo and rustup set for this very
@@ -108,6 +109,10 @@ impl Toolchain {
             .current_dir(workspace)
             .args(["build", "--locked", "--bins", "--profile", profile, "--target", triple])
             .args(packages.iter().flat_map(|package| ["-p", package]));
+        if is_short() {
+            // The surface is built for fewer numbers then.
+            cargo.env(SHORT, "1");
+        }
         if self.builds_core {
             cargo
                 .env("RUSTC_BOOTSTRAP", "1")

@@ -19,8 +19,6 @@ use crate::random::{normal, stream, uniform};
 
 /// The side of the square that holds the user, m.
 pub const SIDE_M: f64 = 4000.0;
-/// Filters with at most this many particles get a smaller buffer, which stays in the cache.
-const FEW: usize = 1024;
 /// The time between measurements, s. The thesis counts in steps; with its five seconds of hovering per measurement the
 /// user of most of its figures walks at 2.5 m/s.
 pub const INTERVAL_S: f64 = 5.0;
@@ -119,13 +117,10 @@ trait Follower {
 
 /// Simulates one flight with one user.
 pub fn trial(walk: &Walk, scalar: ScalarKind, seed: u64, index: u64) -> Outcome {
-    match (scalar, walk.particles <= FEW) {
-        (ScalarKind::F32, true) => with_scalar::<f32, FEW>(walk, seed, index),
-        (ScalarKind::F32, false) => with_scalar::<f32, MOST>(walk, seed, index),
-        (ScalarKind::F64, true) => with_scalar::<f64, FEW>(walk, seed, index),
-        (ScalarKind::F64, false) => with_scalar::<f64, MOST>(walk, seed, index),
-        (ScalarKind::Fixed, true) => with_scalar::<Q16_16, FEW>(walk, seed, index),
-        (ScalarKind::Fixed, false) => with_scalar::<Q16_16, MOST>(walk, seed, index),
+    match scalar {
+        ScalarKind::F32 => fly::<f32>(walk, seed, index, &mut |_| {}),
+        ScalarKind::F64 => fly::<f64>(walk, seed, index, &mut |_| {}),
+        ScalarKind::Fixed => fly::<Q16_16>(walk, seed, index, &mut |_| {}),
     }
 }
 
@@ -141,7 +136,7 @@ pub fn track(walk: &Walk, seed: u64, index: u64) -> Track {
         let estimate = Estimate::of_cloud(number, step.follower.cloud());
         track.estimates.push(Estimate { place: step.estimate, ..estimate });
     };
-    let outcome = fly::<f64, MOST>(walk, seed, index, &mut watch);
+    let outcome = fly::<f64>(walk, seed, index, &mut watch);
     Track { flown: Some(outcome.flown), ..track }
 }
 
@@ -154,27 +149,18 @@ struct Step<'a> {
     follower: &'a dyn Follower,
 }
 
-fn with_scalar<T: Scalar, const L: usize>(walk: &Walk, seed: u64, index: u64) -> Outcome {
-    fly::<T, L>(walk, seed, index, &mut |_| {})
-}
-
-fn fly<T: Scalar, const L: usize>(
-    walk: &Walk,
-    seed: u64,
-    index: u64,
-    watch: &mut dyn FnMut(&Step<'_>),
-) -> Outcome {
+fn fly<T: Scalar>(walk: &Walk, seed: u64, index: u64, watch: &mut dyn FnMut(&Step<'_>)) -> Outcome {
     let mut world = stream(seed, index);
     let phase = TAU * uniform(&mut world);
     let rng = Xoshiro128PlusPlus::seed_from_u64(world.next_u64());
     let mut follower: Box<dyn Follower> = match walk.policy {
-        Policy::Hover(resampler) => Box::new(Hovering::<T, L>::new(walk, resampler, rng)),
+        Policy::Hover(resampler) => Box::new(Hovering::<T>::new(walk, resampler, rng)),
         Policy::Orbit => {
-            Box::new(Orbiting::<T, L>::new(walk, Height::Fixed(T::from_f64(walk.height_m)), rng))
+            Box::new(Orbiting::<T>::new(walk, Height::Fixed(T::from_f64(walk.height_m)), rng))
         }
         Policy::OrbitLow => {
             let heights = Height::Between(T::from_f64(100.0), T::from_f64(1000.0));
-            Box::new(Orbiting::<T, L>::new(walk, heights, rng))
+            Box::new(Orbiting::<T>::new(walk, heights, rng))
         }
     };
     let channel = walk.environment.channel::<f64>();
@@ -197,14 +183,14 @@ fn fly<T: Scalar, const L: usize>(
 }
 
 /// The thesis' filter, with which the drone hovers above its estimate.
-struct Hovering<T: Scalar, const L: usize> {
-    filter: PublishedLocator<T, L>,
+struct Hovering<T: Scalar> {
+    filter: PublishedLocator<T, MOST>,
     rng: Xoshiro128PlusPlus,
     /// The effective number of particles after the last measurement.
     effective: T,
 }
 
-impl<T: Scalar, const L: usize> Hovering<T, L> {
+impl<T: Scalar> Hovering<T> {
     fn new(walk: &Walk, resampler: Resampler, mut rng: Xoshiro128PlusPlus) -> Self {
         let jitter = T::from_f64(walk.jitter_m());
         let settings = PublishedSettings { resampler, jitter, ..PublishedSettings::thesis() };
@@ -220,7 +206,7 @@ impl<T: Scalar, const L: usize> Hovering<T, L> {
     }
 }
 
-impl<T: Scalar, const L: usize> Follower for Hovering<T, L> {
+impl<T: Scalar> Follower for Hovering<T> {
     fn step(&mut self, from: Waypoint<f64>, loss_db: f64) -> ([f64; 2], Waypoint<f64>) {
         if let Some(measurement) = measurement(from, loss_db) {
             // A measurement that no particle explains leaves the cloud unchanged.
@@ -237,8 +223,8 @@ impl<T: Scalar, const L: usize> Follower for Hovering<T, L> {
 }
 
 /// Our filter, with which the drone orbits the estimate.
-struct Orbiting<T: Scalar, const L: usize> {
-    tracker: Tracker<T, L>,
+struct Orbiting<T: Scalar> {
+    tracker: Tracker<T, MOST>,
     orbit: Orbit<T>,
     rng: Xoshiro128PlusPlus,
     begun: bool,
@@ -246,7 +232,7 @@ struct Orbiting<T: Scalar, const L: usize> {
     effective: T,
 }
 
-impl<T: Scalar, const L: usize> Orbiting<T, L> {
+impl<T: Scalar> Orbiting<T> {
     fn new(walk: &Walk, height: Height<T>, mut rng: Xoshiro128PlusPlus) -> Self {
         let tracker = Tracker::with_count(
             walk.particles,
@@ -268,7 +254,7 @@ fn motion<T: Scalar>(least_sigma_db: Option<f64>) -> Motion<T> {
     }
 }
 
-impl<T: Scalar, const L: usize> Follower for Orbiting<T, L> {
+impl<T: Scalar> Follower for Orbiting<T> {
     fn step(&mut self, from: Waypoint<f64>, loss_db: f64) -> ([f64; 2], Waypoint<f64>) {
         let interval = T::from_f64(INTERVAL_S);
         if self.begun {

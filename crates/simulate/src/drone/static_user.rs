@@ -99,16 +99,16 @@ impl<'a> Flight<'a> {
     /// The thesis' filter with its random generator.
     ///
     /// # Panics
-    /// More particles than L, or none.
-    pub fn published<T: Scalar, const L: usize>(
+    /// More than [`MOST`] particles, or none.
+    pub fn published<T: Scalar>(
         &self,
         filter: PublishedFilter,
-    ) -> (Box<PublishedLocator<T, L>>, Xoshiro128PlusPlus) {
+    ) -> (Box<PublishedLocator<T, MOST>>, Xoshiro128PlusPlus) {
         let mut rng = Xoshiro128PlusPlus::seed_from_u64(self.seed);
         let settings =
             PublishedSettings { resampler: filter.resampler, ..PublishedSettings::thesis() };
         let channel = self.geometry.environment.channel::<T>();
-        let filter = PublishedLocator::<T, L>::with_count(
+        let filter = PublishedLocator::<T, MOST>::with_count(
             filter.particles,
             channel,
             &square(),
@@ -121,10 +121,10 @@ impl<'a> Flight<'a> {
     /// Our filter.
     ///
     /// # Panics
-    /// More points than L, or none.
-    pub fn lattice<T: Scalar, const L: usize>(&self, points: usize) -> Locator<T, L, MEMORY> {
+    /// More than [`MOST`] points, or none.
+    pub fn lattice<T: Scalar>(&self, points: usize) -> Locator<T, MOST, MEMORY> {
         let channel = self.geometry.environment.channel::<T>();
-        let filter = Locator::<T, L, MEMORY>::with_count(points, channel, &square());
+        let filter = Locator::<T, MOST, MEMORY>::with_count(points, channel, &square());
         filter.expect("the number of points is within bounds")
     }
 
@@ -174,7 +174,7 @@ pub fn track(geometry: &Geometry, filter: FilterSetting, seed: u64, index: u64) 
     let flight = Flight::new(geometry, seed, index);
     match filter {
         FilterSetting::Published(filter) => {
-            let (mut filter, mut rng) = flight.published::<f64, MOST>(filter);
+            let (mut filter, mut rng) = flight.published::<f64>(filter);
             flight.track(|measurement| {
                 let update = filter.measure(measurement, &mut rng);
                 let effective = update.map_or(0.0, |update| update.effective);
@@ -182,7 +182,7 @@ pub fn track(geometry: &Geometry, filter: FilterSetting, seed: u64, index: u64) 
             })
         }
         FilterSetting::Best(points) => {
-            let mut filter = Box::new(flight.lattice::<f64, MOST>(points));
+            let mut filter = Box::new(flight.lattice::<f64>(points));
             flight.track(|measurement| {
                 // A measurement that no point explains leaves the lattice unchanged.
                 let _ = filter.measure(measurement);

@@ -5,10 +5,8 @@ use kestirim_particle_filter::{Likelihood, PointMass};
 use kestirim_replay::ScalarKind;
 use kestirim_scalar::{Q16_16, Scalar};
 
-use super::static_user::{Flight, Geometry, MOST, PublishedFilter, square};
+use super::static_user::{Flight, Geometry, PublishedFilter, square};
 
-/// Filters with at most this many particles get a smaller buffer, which stays in the cache.
-const FEW: usize = 1024;
 /// The number of points of the lattice that represents the exact posterior.
 const DENSE: usize = 640;
 
@@ -83,20 +81,12 @@ fn with_scalar<T: Scalar>(job: &Job, seed: u64, index: u64) -> Outcome {
     let flight = Flight::new(&job.geometry, seed, index);
     let mut outcome = Outcome::default();
     for filter in &job.published {
-        let (error, refused) = if filter.particles <= FEW {
-            flight.by_published::<T, FEW>(*filter)
-        } else {
-            flight.by_published::<T, MOST>(*filter)
-        };
+        let (error, refused) = flight.by_published::<T>(*filter);
         outcome.published.push(error);
         outcome.refused += refused;
     }
     for (place, &points) in job.bests.iter().enumerate() {
-        let found = if points <= FEW {
-            flight.by_best::<T, FEW>(points, place == 0)
-        } else {
-            flight.by_best::<T, MOST>(points, place == 0)
-        };
+        let found = flight.by_best::<T>(points, place == 0);
         outcome.bests.push(found.error);
         outcome.refused += found.refused;
         outcome.credible |= found.credible;
@@ -127,8 +117,8 @@ impl Likelihood<f32, 2> for Loss<'_> {
 
 impl Flight<'_> {
     /// The error of the thesis' filter, m, and the number of measurements that it refused.
-    fn by_published<T: Scalar, const L: usize>(&self, filter: PublishedFilter) -> (f64, u32) {
-        let (mut filter, mut rng) = self.published::<T, L>(filter);
+    fn by_published<T: Scalar>(&self, filter: PublishedFilter) -> (f64, u32) {
+        let (mut filter, mut rng) = self.published::<T>(filter);
         let measurements = self.measurements::<T>();
         let refused = measurements.filter(|m| filter.measure(m, &mut rng).is_err()).count() as u32;
         (self.error(filter.moments().mean()), refused)
@@ -136,8 +126,8 @@ impl Flight<'_> {
 
     /// Runs our filter. Whether its 90 % credible region contains the user is expensive, and only computed if `region`
     /// is set.
-    fn by_best<T: Scalar, const L: usize>(&self, points: usize, region: bool) -> Found {
-        let mut filter = Box::new(self.lattice::<T, L>(points));
+    fn by_best<T: Scalar>(&self, points: usize, region: bool) -> Found {
+        let mut filter = Box::new(self.lattice::<T>(points));
         let refused = self.measurements::<T>().filter(|m| filter.measure(m).is_err()).count();
         let user = self.user.map(T::from_f64);
         let credible = region && filter.credible(&user, T::from_f64(0.9)) == Some(true);

@@ -87,7 +87,10 @@ mod tests {
     use super::*;
     use crate::system::{AnySystem, Files, Panel, Settings};
     use crate::systems::ALL;
-    use kestirim_telemetry::{Footprint, GlobalPosition, Imu, PathLoss, Position, Range};
+    use kestirim_health::{Health, Reason};
+    use kestirim_telemetry::{
+        EstimateHealth, Footprint, GlobalPosition, Imu, PathLoss, Position, Range,
+    };
 
     /// The systems whose estimators are built without files and use messages.
     fn systems() -> impl Iterator<Item = Following> {
@@ -168,6 +171,26 @@ mod tests {
         assert_eq!(state.counts.refused, 2);
         assert_eq!(state.senders_path.iter().collect::<Vec<_>>(), [[1.0, 1.0], [2.0, 1.0]]);
         assert_eq!(state.footprints.iter().count(), 1);
+        Ok(())
+    }
+
+    #[test]
+    fn what_the_sender_doubts_is_told() -> Result<(), Error> {
+        let (mut feed, mut state) = feed(&Following::NONE);
+        let later = Reason::ALL.iter().fold(1, |bits, reason| bits + Health::from(*reason).bits());
+        for (reasons, words, is_warned) in [
+            (0, "good", false),
+            (Health::from(Reason::Dropout).bits(), "degraded: dropout", false),
+            (Health::from(Reason::Axes).bits(), "bad: axes", true),
+            (later, "a reason that this version does not know", true),
+        ] {
+            feed.take(&EstimateHealth { time_us: 0, reasons }.into(), &mut state)?;
+            let facts = state.answer().facts;
+            let told = facts.iter().find(|(name, _)| name == "the sender's own estimate");
+            assert_eq!(told.map(|(_, words)| words.as_str()), Some(words));
+            let warned = |warning: &String| warning.contains("its own estimate");
+            assert_eq!(state.warnings().iter().any(warned), is_warned, "{words}");
+        }
         Ok(())
     }
 

@@ -14,6 +14,12 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// The colour of the sender's own estimate.
 const SENDERS: Colour = Colour::Other(3);
 
+/// The health of a sender's estimate in words.
+pub(super) fn in_words(reasons: u16) -> String {
+    let unknown = || "a reason that this version does not know".to_owned();
+    kestirim_health::Health::from_bits(reasons).map_or_else(unknown, |health| health.to_string())
+}
+
 impl State {
     /// Results by name, with their units.
     pub(super) fn all_facts(&self) -> Vec<(String, String)> {
@@ -43,6 +49,9 @@ impl State {
         if let Some(Health { accepted, rejected, failed, .. }) = self.health {
             let health = format!("{accepted} taken in, {rejected} refused, {failed} failed");
             facts.push(("the sender's own account", health));
+        }
+        if let Some(reasons) = self.senders_doubts {
+            facts.push(("the sender's own estimate", in_words(reasons)));
         }
         let named = facts.into_iter().map(|(name, value)| (name.to_owned(), value));
         named.chain(self.facts.iter().cloned()).collect()

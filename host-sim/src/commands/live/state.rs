@@ -7,12 +7,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use kestirim_gnss_ppp::Geodetic;
 use kestirim_telemetry::{
-    Footprint, GlobalPosition, Health, Imu, Message, PathLoss, Position, Range,
+    EstimateHealth, Footprint, GlobalPosition, Health, Imu, Message, PathLoss, Position, Range,
 };
 use nalgebra::{Matrix3, Vector3};
 
 use super::device::Row;
 use super::options::Following;
+use super::picture::in_words;
 use super::report::{Counts, DeviceRow, Report};
 use super::thinned::Thinned;
 use super::window::Window;
@@ -48,6 +49,8 @@ pub(super) struct State {
     /// The latest time of the sender's clock, in microseconds.
     pub(super) time_us: Option<u64>,
     pub(super) health: Option<Health>,
+    /// The reasons why the sender doubts its estimate, as bits.
+    pub(super) senders_doubts: Option<u16>,
     /// The position estimate (m).
     pub(super) position: Option<[f64; 3]>,
     /// The position estimate on the map (m).
@@ -100,6 +103,7 @@ impl State {
             ignored: Arc::default(),
             time_us: None,
             health: None,
+            senders_doubts: None,
             position: None,
             place: None,
             path_length_m: None,
@@ -142,7 +146,7 @@ impl State {
     pub(super) fn restart(&mut self) {
         let path = Path::new(POINTS);
         self.counts.restarts += 1;
-        (self.position, self.place) = (None, None);
+        (self.position, self.place, self.senders_doubts) = (None, None, None);
         self.path = path.clone();
         self.senders_path = path.clone();
         self.footprints = path.clone();
@@ -244,6 +248,10 @@ impl State {
                 self.health = Some(health);
                 true
             }
+            Message::EstimateHealth(EstimateHealth { reasons, .. }) => {
+                self.senders_doubts = Some(reasons);
+                true
+            }
             // A kind of message that is not drawn.
             _ => true,
         };
@@ -277,7 +285,16 @@ impl State {
         let ignored = (ignored > 0).then(|| {
             format!("{ignored} datagrams of a second sender were ignored: a port is for one sender (--udp)")
         });
-        let told = [anew, left_out, ignored].into_iter().flatten().chain(self.shared_numbers());
+        let is_bad = |reasons: &u16| {
+            let health = kestirim_health::Health::from_bits(*reasons);
+            health.is_none_or(|health| health.state() == kestirim_health::State::Bad)
+        };
+        let doubts = self.senders_doubts.filter(is_bad);
+        let doubts = doubts.map(|reasons| {
+            format!("the sender does not rely on its own estimate: {}", in_words(reasons))
+        });
+        let told =
+            [anew, left_out, ignored, doubts].into_iter().flatten().chain(self.shared_numbers());
         self.assumptions.iter().chain(&self.suspicions).cloned().chain(told).collect()
     }
 

@@ -3,8 +3,8 @@
 use embedded_io::{Read, ReadReady, Write};
 use kestirim_air_to_ground::Measurement;
 use kestirim_particle_filter::Xoshiro128PlusPlus;
-use kestirim_telemetry::{Health, PathLoss, Position, Transmitter};
-use kestirim_user_locator::{TrackEstimate, Tracker};
+use kestirim_telemetry::{EstimateHealth, Health, PathLoss, Position, Transmitter};
+use kestirim_user_locator::{Health as Doubts, Reason, TrackEstimate, Tracker};
 use rand_core::{SeedableRng, TryRng};
 
 use crate::beacon::Beacon;
@@ -23,6 +23,15 @@ pub enum Event {
     NoFix,
     /// The filter refused a measurement; it has only advanced in time.
     Refused(kestirim_user_locator::Error),
+}
+
+impl Event {
+    /// Whether the estimate of the user's position can be relied upon after this event.
+    fn doubts(&self) -> Doubts {
+        Doubts::GOOD
+            .with(Reason::Dropout, *self == Self::NoFix)
+            .with(Reason::Rejected, matches!(self, Self::Refused(_)))
+    }
 }
 
 /// A drone that locates a user.
@@ -97,6 +106,9 @@ where
         };
         let Self { accepted, rejected, failed, .. } = *self;
         let health = Health { time_us, accepted, rejected, failed };
+        self.telemetry.send(health).map_err(|_| Error::Telemetry)?;
+        let reasons = event.doubts().bits();
+        let health = EstimateHealth { time_us, reasons };
         self.telemetry.send(health).map_err(|_| Error::Telemetry)?;
         Ok(Some(event))
     }

@@ -7,9 +7,13 @@
 #![no_std]
 #![expect(missing_debug_implementations, reason = "a receiver of telemetry has none")]
 
-use kestirim_pedestrian::{Config, EkfTracker, ImuSample, PathUncertainty, SensorClass};
+use kestirim_pedestrian::{
+    Config, EkfTracker, Health as Doubts, ImuSample, PathUncertainty, SensorClass,
+};
 use kestirim_scalar::Components;
-use kestirim_telemetry::{CAPACITY, Footprint, Health, Imu, Message, Position, Receiver, encode};
+use kestirim_telemetry::{
+    CAPACITY, EstimateHealth, Footprint, Health, Imu, Message, Position, Receiver, encode,
+};
 use nalgebra::SVector;
 
 /// The number of samples per transmitted position.
@@ -32,6 +36,8 @@ pub struct Node {
     receiver: Receiver,
     tracker: EkfTracker<f32>,
     uncertainty: PathUncertainty<f32>,
+    /// The health that was last sent.
+    told: Option<Doubts>,
     sent: u16,
     time_us: u64,
     accepted: u32,
@@ -45,6 +51,7 @@ impl Node {
             receiver: Receiver::new(),
             tracker: EkfTracker::new(Config { sensor, ..Config::default() }),
             uncertainty: PathUncertainty::new(sensor),
+            told: None,
             sent: 0,
             time_us: 0,
             accepted: 0,
@@ -52,8 +59,9 @@ impl Node {
         }
     }
 
-    /// Takes a received byte. Returns the frame to be sent if the byte completed a sample that ended a stride or for
-    /// which a position is due, or the other side's `Health`, its farewell. The frame is written into `buffer`.
+    /// Takes a received byte. Returns the frame to be sent if the byte completed a sample that ended a stride, for
+    /// which a position is due, or before which the path's health changed; or the other side's `Health`, its farewell.
+    /// The frame is written into `buffer`.
     pub fn take<'a>(&mut self, byte: u8, buffer: &'a mut [u8; FRAME]) -> Option<Answer<'a>> {
         let answer = match self.receiver.push(byte)?.message {
             Message::Imu(sample) => self.track(&sample)?,
@@ -86,12 +94,14 @@ impl Node {
             let (position, length) = (*stride.position.as_array(), stride.length);
             return Some(Footprint { time_us: stride.time_us, position, length }.into());
         }
-        let is_due = self.accepted.is_multiple_of(SAMPLES_A_POSITION);
-        is_due.then(|| {
+        if self.accepted.is_multiple_of(SAMPLES_A_POSITION) {
             let [x, y, _] = *self.uncertainty.standard_deviation().as_array();
             let position = *estimate.position.as_array();
-            Position { time_us, position, sigma: Some(x.max(y)) }.into()
-        })
+            return Some(Position { time_us, position, sigma: Some(x.max(y)) }.into());
+        }
+        let health = self.tracker.warnings().health();
+        let is_news = self.told.replace(health) != Some(health);
+        is_news.then(|| EstimateHealth { time_us, reasons: health.bits() }.into())
     }
 
     fn health(&self) -> Health {

@@ -6,7 +6,7 @@ use kestirim_gnss_ppp::GpsTime;
 use kestirim_ppp_filter::{
     Health as Doubts, Lean, PppFilter, SatelliteObservation, Solution, states,
 };
-use kestirim_telemetry::{GlobalPosition, Health, Transmitter};
+use kestirim_telemetry::{EstimateHealth, GlobalPosition, Health, Transmitter};
 
 use crate::observations::{Message, Observations, Observed, Receiver, SATELLITES};
 use crate::source::{Source, Unusable, sighting};
@@ -101,6 +101,9 @@ where
                     .then(|| libm::sqrt(solution.covariance.trace() / 3.0) as f32),
             };
             self.telemetry.send(position).map_err(|_| Error::Telemetry)?;
+            let reasons = solution.health.in_short().bits();
+            let health = EstimateHealth { time_us, reasons };
+            self.telemetry.send(health).map_err(|_| Error::Telemetry)?;
         }
         let Self { accepted, rejected, .. } = *self;
         let failed = self.receiver.damaged().saturating_add(self.source.damaged());

@@ -1,9 +1,12 @@
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
 use embedded_io::Write;
-use kestirim_pedestrian::{Config, EkfTracker, Error as Refusal, Estimate, ImuSample, Stride};
+use kestirim_pedestrian::{
+    Config, EkfTracker, Error as Refusal, Estimate, Health as Doubts, ImuSample, PathUncertainty,
+    Stride,
+};
 use kestirim_scalar::{Components, Scalar};
-use kestirim_telemetry::{Footprint, Health, Position, Transmitter};
+use kestirim_telemetry::{EstimateHealth, Footprint, Health, Position, Transmitter};
 use nalgebra::SVector;
 
 use crate::log::Log;
@@ -44,12 +47,17 @@ pub struct Summary {
     pub failed: u32,
     /// The length of the horizontal path from stance to stance (m).
     pub path: f32,
+    /// Whether the path can be relied upon.
+    pub health: Doubts,
 }
 
 /// The application: `T` is the tracker's scalar, `F` the file of the log, `P` the port for telemetry.
 pub struct App<T: Scalar, I2C, F, P> {
     imu: Imu<I2C>,
     tracker: EkfTracker<T>,
+    uncertainty: PathUncertainty<T>,
+    /// The health that was last sent.
+    told: Option<Doubts>,
     log: Log<F>,
     line: Transmitter<P>,
     standing: bool,
@@ -71,9 +79,12 @@ impl<T: Scalar, I2C: I2c, F: Write, P: Write> App<T, I2C, F, P> {
         file: F,
         port: P,
     ) -> Result<Self, Failure<I2C, F, P>> {
+        let config = Config::default();
         Ok(Self {
             imu: Imu::new(i2c, delay).map_err(Error::Sensor)?,
-            tracker: EkfTracker::new(Config::default()),
+            tracker: EkfTracker::new(config),
+            uncertainty: PathUncertainty::new(config.sensor),
+            told: None,
             log: Log::new(file),
             line: Transmitter::new(port),
             standing: false,
@@ -118,14 +129,17 @@ impl<T: Scalar, I2C: I2c, F: Write, P: Write> App<T, I2C, F, P> {
     pub fn finish(&mut self) -> Result<Summary, Failure<I2C, F, P>> {
         let closed = self.log.close().map_err(Error::Log);
         let stride = self.tracker.finish();
-        let Self { time_us, position, accepted, rejected, failed, .. } = *self;
-        let health = Health { time_us, accepted, rejected, failed };
+        let Self { time_us, accepted, rejected, failed, .. } = *self;
+        let counts = Health { time_us, accepted, rejected, failed };
         let sent = self
             .tell_stride(stride)
-            .and_then(|()| self.line.send(Position { time_us, position, sigma: None }))
-            .and_then(|()| self.line.send(health));
+            .and_then(|()| self.tell_position())
+            .and_then(|()| self.tell_health())
+            .and_then(|()| self.line.send(counts));
         closed.and(sent.map_err(Error::Port))?;
-        Ok(Summary { accepted, rejected, failed, path: self.tracker.path_length().to_f32() })
+        let (path, health) =
+            (self.tracker.path_length().to_f32(), self.tracker.warnings().health());
+        Ok(Summary { accepted, rejected, failed, path, health })
     }
 
     fn track(&mut self, time_us: u64, counts: &Counts) -> Result<Estimate<T>, Refusal> {
@@ -148,20 +162,38 @@ impl<T: Scalar, I2C: I2c, F: Write, P: Write> App<T, I2C, F, P> {
     }
 
     fn tell(&mut self, counts: &Counts, stride: Option<Stride<T>>) -> Result<(), P::Error> {
-        let Self { time_us, position, .. } = *self;
+        let time_us = self.time_us;
         self.line.send(kestirim_telemetry::Imu {
             time_us,
             specific_force: counts.specific_force(),
             angular_rate: counts.angular_rate(),
         })?;
         if self.accepted.is_multiple_of(SAMPLES_A_POSITION) {
-            self.line.send(Position { time_us, position, sigma: None })?;
+            self.tell_position()?;
         }
-        self.tell_stride(stride)
+        self.tell_stride(stride)?;
+        self.tell_health()
+    }
+
+    fn tell_position(&mut self) -> Result<(), P::Error> {
+        let Self { time_us, position, .. } = *self;
+        let [x, y, _] = *self.uncertainty.standard_deviation().as_array();
+        self.line.send(Position { time_us, position, sigma: Some(x.max(y).to_f32()) })
+    }
+
+    /// Sends whether the path can be relied upon, if that has changed.
+    fn tell_health(&mut self) -> Result<(), P::Error> {
+        let health = self.tracker.warnings().health();
+        if self.told.replace(health) == Some(health) {
+            return Ok(());
+        }
+        self.line.send(EstimateHealth { time_us: self.time_us, reasons: health.bits() })
     }
 
     fn tell_stride(&mut self, stride: Option<Stride<T>>) -> Result<(), P::Error> {
-        let Some(Stride { time_us, position, length, .. }) = stride else { return Ok(()) };
+        let Some(stride) = stride else { return Ok(()) };
+        self.uncertainty.add(&stride);
+        let Stride { time_us, position, length, .. } = stride;
         let (position, length) = (metres(&position), length.to_f32());
         self.line.send(Footprint { time_us, position, length })
     }

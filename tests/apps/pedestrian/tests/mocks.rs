@@ -3,7 +3,8 @@
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::i2c::{Mock, Transaction};
 use embedded_io::{ErrorKind, ErrorType, Write};
-use kestirim_telemetry::{Health, Imu, Message, Receiver};
+use kestirim_pedestrian::Reason;
+use kestirim_telemetry::{EstimateHealth, Health, Imu, Message, Receiver};
 use pedestrian_app::{App, Error, SensorError};
 
 const MPU: u8 = 0x68;
@@ -100,6 +101,10 @@ fn samples_are_logged_in_blocks_and_sent() {
     assert_eq!(sent[0], Imu { time_us: 0, specific_force, angular_rate }.into());
     let of_positions = sent.iter().filter(|message| matches!(message, Message::Position(_)));
     assert_eq!(of_positions.count(), 3 + 1, "every tenth and the last");
+    let reasons = kestirim_pedestrian::Health::from(Reason::NotObservable).bits();
+    let doubt = EstimateHealth { time_us: 0, reasons }.into();
+    let told = |message: &&Message| matches!(message, Message::EstimateHealth(_));
+    assert_eq!(sent.iter().filter(told).collect::<Vec<_>>(), [&doubt], "no standstill yet");
     let health = Health { time_us: 290_000, accepted: 30, rejected: 0, failed: 0 };
     assert_eq!(sent.last(), Some(&health.into()));
 }

@@ -6,7 +6,7 @@ use embedded_hal::i2c::I2c;
 use embedded_hal::spi::SpiBus;
 use embedded_io::Write;
 use kestirim_scalar::Scalar;
-use kestirim_telemetry::{Health, Message, Position, Range, Transmitter};
+use kestirim_telemetry::{EstimateHealth, Health, Message, Position, Range, Transmitter};
 use kestirim_uwb_tracker::{CalibratedPlaneTracker, Config, InertialSample, Outcome, RangeSample};
 
 use crate::room::{HEIGHT, SITES, Site, metres};
@@ -125,7 +125,8 @@ where
     fn tell_health(&mut self, time_us: u64) -> Result<(), Error> {
         let health = self.tracker.health(time_us);
         let (accepted, rejected, failed) = (health.taken, health.rejected, self.failed);
-        self.send(Health { time_us, accepted, rejected, failed })
+        self.send(Health { time_us, accepted, rejected, failed })?;
+        self.send(EstimateHealth { time_us, reasons: health.in_short().bits() })
     }
 
     fn send(&mut self, message: impl Into<Message>) -> Result<(), Error> {

@@ -41,7 +41,7 @@ fn ranges_come_out_as_they_went_in() {
     }
     drop(robot);
     let mut receiver = Receiver::new();
-    let (mut next, mut failed) = (0, 0);
+    let (mut next, mut failed, mut healths) = (0, 0, 0);
     for frame in receiver.frames(&told.0) {
         match frame.message {
             Message::Range(told) => {
@@ -54,9 +54,11 @@ fn ranges_come_out_as_they_went_in() {
                 next += 1;
             }
             Message::Health(health) => failed = health.failed,
+            Message::EstimateHealth(_) => healths += 1,
             _ => {}
         }
     }
     assert_eq!(next, STEPS);
     assert_eq!(failed, STEPS as u32 / 7);
+    assert_eq!(healths, STEPS / 4, "one after each round of the anchors");
 }

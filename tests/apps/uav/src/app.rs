@@ -1,9 +1,10 @@
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::I2c;
 use embedded_io::Write;
+use kestirim_health::{Health as Doubts, Reason};
 use kestirim_luenberger::{Error as Refusal, Predictor, PredictorGains};
 use kestirim_scalar::{Components, Scalar};
-use kestirim_telemetry::{Flight, Health, State, Transmitter};
+use kestirim_telemetry::{EstimateHealth, Flight, Health, State, Transmitter};
 use nalgebra::SVector;
 
 use crate::aeroplane::{START, gains};
@@ -128,6 +129,8 @@ impl<T: Scalar, I: I2c, A: I2c, D: DelayNs, P: Write> App<T, I, A, D, P> {
         if self.steps.is_multiple_of(STEPS_A_HEALTH) {
             let Self { accepted, rejected, failed, .. } = *self;
             self.line.send(Health { time_us, accepted, rejected, failed })?;
+            let reasons = Doubts::GOOD.with(Reason::Dropout, self.blind > 0).bits();
+            self.line.send(EstimateHealth { time_us, reasons })?;
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use kestirim_health::{Health, Reason, State};
 
-use super::values::{any, call_each, keep, one_of, yes_or_no};
+use super::values::{any, call_each, keep, one_of, whole, yes_or_no};
 
 fn reason() -> Reason {
     one_of(Reason::ALL)
@@ -22,6 +22,8 @@ fn healths() {
     keep(Health::has(both, reason()));
     keep(Health::state(both));
     Health::reasons(both).for_each(keep);
+    keep(Health::bits(both));
+    keep(Health::from_bits(whole()));
 }
 
 /// Calls everything in this module.

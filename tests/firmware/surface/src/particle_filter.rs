@@ -7,7 +7,8 @@ use kestirim_particle_filter::{
 use kestirim_scalar::{Q16_16, Scalar};
 
 use super::values::{
-    AnyRng, any, call_each, keep, number, numbers, one_of, rounds, slice, slice_mut, try_on, whole,
+    AnyRng, FLOATS, any, call_each, keep, number, numbers, one_of, rounds, slice, slice_mut,
+    try_on, whole,
 };
 
 fn resampler() -> Resampler {
@@ -155,5 +156,8 @@ fn all_of<T: Scalar>() {
 
 /// Calls everything in this module.
 pub fn run() {
-    call_each([all_of::<f32>, all_of::<Q16_16>]);
+    if FLOATS {
+        call_each([all_of::<f32>]);
+    }
+    call_each([all_of::<Q16_16>]);
 }

@@ -15,8 +15,8 @@ use kestirim_user_locator::{
 };
 
 use super::values::{
-    AnyRng, any, call_each, keep, maybe, number, numbers, one_of, option, rounds, slice, try_on,
-    whole, yes_or_no,
+    AnyRng, FLOATS, any, call_each, keep, maybe, number, numbers, one_of, option, rounds, slice,
+    try_on, whole, yes_or_no,
 };
 
 fn region<T: Scalar, const D: usize>() -> Option<Region<T, D>> {
@@ -120,6 +120,7 @@ fn areas<T: Scalar, const N: usize>() -> Option<()> {
     let area = any(Area::relative_to(&area, numbers())).ok()?;
     let within = any(Within::new(channel()?, &area));
     keep(Likelihood::log_likelihood(&within, &measurement()?, numbers()));
+    keep(Likelihood::log_likelihood_again(&within, &measurement()?, numbers()));
     keep(grounds::<T, N, 9>(area.clone()));
     searches::<T, N, 9>(area)
 }
@@ -231,5 +232,8 @@ fn all_of<T: Scalar>() {
 
 /// Calls everything in this module.
 pub fn run() {
-    call_each([all_of::<f32>, all_of::<Q16_16>]);
+    if FLOATS {
+        call_each([all_of::<f32>]);
+    }
+    call_each([all_of::<Q16_16>]);
 }

@@ -9,7 +9,7 @@ use host_sim::random::{normal, stream};
 use kestirim_air_to_ground::{Channel, Environment, Measurement};
 use kestirim_particle_filter::Xoshiro128PlusPlus;
 use kestirim_telemetry::{Message, PathLoss, Position};
-use kestirim_user_locator::Tracker;
+use kestirim_user_locator::{Health, Reason, Tracker};
 use rand_core::{Rng, SeedableRng};
 use target_bench::{App, CORTEX_M4F};
 
@@ -173,12 +173,13 @@ fn cortex_m4f() -> Result<()> {
     let run = app.run(&encode(&flight), None)?;
     ensure!(run.success, "{}", run.console);
 
-    let (mut losses, mut path, mut health) = (Vec::new(), Vec::new(), None);
+    let (mut losses, mut path, mut health, mut doubts) = (Vec::new(), Vec::new(), None, Vec::new());
     for message in telemetry::messages(&run.telemetry) {
         match message {
             Message::PathLoss(loss) => losses.push(loss),
             Message::Position(position) => path.push(position),
             Message::Health(counts) => health = Some(counts),
+            Message::EstimateHealth(estimate) => doubts.push(estimate.reasons),
             other => bail!("{other:?}"),
         }
     }
@@ -191,6 +192,8 @@ fn cortex_m4f() -> Result<()> {
     // The beacon before the first fix.
     let counts = health.map(|health| (health.accepted as usize, health.rejected, health.failed));
     assert_eq!(counts, Some((losses.len(), 0, 1)));
+    assert_eq!(doubts[0], Health::from(Reason::Dropout).bits());
+    assert_eq!(doubts[1..], vec![0; losses.len()]);
 
     let lines = image::log(&app, &run)?;
     assert_eq!(lines, ["warn NoFix"]);

@@ -58,6 +58,7 @@ fn check(program: &'static str, resumed: &[&str]) -> Result<()> {
     ensure!((9.0..14.0).contains(&path), "the route is 12.6 m, not {path}");
     let Some(Message::Health(health)) = messages.last() else { panic!("no farewell") };
     assert_eq!((health.accepted, health.rejected, health.failed), (samples, 0, 1));
+    assert_eq!(telemetry::doubts(&messages).last(), Some(&0), "the walk is good");
     assert_eq!(image::log(&app, &run)?, ["info farewell"]);
     image::check_panics_but_in(resumed, program, &app)
 }

@@ -101,11 +101,12 @@ fn cortex_m4f() -> Result<()> {
     let run = app.run(&encode(&epochs), None)?;
     ensure!(run.success, "{}", run.console);
 
-    let (mut path, mut health) = (Vec::new(), None);
+    let (mut path, mut health, mut doubts) = (Vec::new(), None, Vec::new());
     for message in telemetry::messages(&run.telemetry) {
         match message {
             Message::GlobalPosition(position) => path.push(position),
             Message::Health(counts) => health = Some(counts),
+            Message::EstimateHealth(estimate) => doubts.push(estimate.reasons),
             other => bail!("{other:?}"),
         }
     }
@@ -121,6 +122,10 @@ fn cortex_m4f() -> Result<()> {
     // A damaged message and a damaged line.
     let counts = health.map(|health| (health.accepted as usize, health.rejected, health.failed));
     assert_eq!(counts, Some((epochs.len(), 0, 2)));
+
+    let expected: Vec<_> =
+        solutions.iter().map(|solution| solution.health.in_short().bits()).collect();
+    assert_eq!(doubts, expected);
 
     let lines = image::log(&app, &run)?;
     assert_eq!(lines, solutions.iter().flat_map(log).collect::<Vec<_>>());

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 use host_sim::systems::pedestrian::recording::log;
-use kestirim_pedestrian::{Config, EkfTracker, ImuSample};
+use kestirim_pedestrian::{Config, EkfTracker, ImuSample, PathUncertainty};
 use kestirim_scalar::{Components, Q12_20, Scalar};
-use kestirim_telemetry::{Footprint, Health, Imu, Message, Position};
+use kestirim_telemetry::{EstimateHealth, Footprint, Health, Imu, Message, Position};
 use nalgebra::SVector;
 use target_bench::streams::{Encode, Sample, walk};
 use target_bench::{App, CORTEX_M0, CORTEX_M4F, Target};
@@ -17,16 +17,22 @@ use super::{card, image, telemetry};
 const FORCE_STEP: f64 = 16.0 / 32768.0 * 9.806_65 / 2.0 + 1e-4;
 const RATE_STEP: f64 = 0.001_065_264_436 / 2.0 + 1e-6;
 
-/// The application's messages for these samples, computed on the host: positions and footprints in its order, and the
-/// length of the path (m).
+/// The application's messages for these samples, computed on the host: positions, footprints and the path's health in
+/// its order, and the length of the path (m).
 fn on_host<T: Scalar>(samples: &[Imu]) -> (Vec<Message>, f32) {
-    let mut tracker = EkfTracker::<T>::new(Config::default());
+    let config = Config::default();
+    let mut tracker = EkfTracker::<T>::new(config);
+    let mut uncertainty = PathUncertainty::<T>::new(config.sensor);
     let metres = |position: &SVector<T, 3>| position.as_array().map(T::to_f32);
     let footprint = |stride: kestirim_pedestrian::Stride<T>| {
         let (time_us, length) = (stride.time_us, stride.length.to_f32());
         Message::Footprint(Footprint { time_us, position: metres(&stride.position), length })
     };
-    let mut told = Vec::new();
+    let sigma = |uncertainty: &PathUncertainty<T>| {
+        let [x, y, _] = *uncertainty.standard_deviation().as_array();
+        Some(x.max(y).to_f32())
+    };
+    let (mut told, mut reasons) = (Vec::new(), None);
     let mut last = Position { time_us: 0, position: [0.0; 3], sigma: None };
     for (index, sample) in samples.iter().enumerate() {
         let estimate = tracker
@@ -39,12 +45,22 @@ fn on_host<T: Scalar>(samples: &[Imu]) -> (Vec<Message>, f32) {
         last.time_us = sample.time_us;
         last.position = metres(&estimate.position);
         if (index + 1) % 10 == 0 {
-            told.push(last.into());
+            told.push(Position { sigma: sigma(&uncertainty), ..last }.into());
         }
-        told.extend(estimate.stride.map(footprint));
+        if let Some(stride) = estimate.stride {
+            uncertainty.add(&stride);
+            told.push(footprint(stride));
+        }
+        let now = tracker.warnings().health().bits();
+        if reasons.replace(now) != Some(now) {
+            told.push(EstimateHealth { time_us: sample.time_us, reasons: now }.into());
+        }
     }
-    told.extend(tracker.finish().map(footprint));
-    told.push(last.into());
+    if let Some(stride) = tracker.finish() {
+        uncertainty.add(&stride);
+        told.push(footprint(stride));
+    }
+    told.push(Position { sigma: sigma(&uncertainty), ..last }.into());
     (told, tracker.path_length().to_f32())
 }
 
@@ -111,6 +127,7 @@ fn check<T: Scalar>(target: &'static Target) -> Result<()> {
     ensure!((11.0..14.0).contains(&path), "the route is 12.6 m, not {path}");
     let (time_us, accepted) = (sent.last().context("a walk")?.time_us, walk.len() as u32);
     assert_eq!(*health, Health { time_us, accepted, rejected: 0, failed: 0 }.into());
+    assert_eq!(telemetry::doubts(&messages).last(), Some(&0), "the walk is good");
 
     let mut written = run.card.context("the card")?;
     check_log::<T>(&card::file(&mut written, "WALK.TXT")?, &sent, path)?;

@@ -91,12 +91,13 @@ fn rv32imc() -> Result<()> {
     ensure!(run.success, "{}", run.console);
 
     let messages = telemetry::messages(&run.telemetry);
-    let (mut ranges, mut path, mut health) = (Vec::new(), Vec::new(), None);
+    let (mut ranges, mut path, mut health, mut doubts) = (Vec::new(), Vec::new(), None, None);
     for message in messages {
         match message {
             Message::Range(range) => ranges.push(range),
             Message::Position(position) => path.push(position),
             Message::Health(counts) => health = Some(counts),
+            Message::EstimateHealth(estimate) => doubts = Some(estimate.reasons),
             other => anyhow::bail!("{other:?}"),
         }
     }
@@ -132,6 +133,7 @@ fn rv32imc() -> Result<()> {
     ensure!(apart < APART, "a position is {apart} m off");
     let rmse = (squares / path.len() as f64).sqrt();
     ensure!(rmse < 0.1, "the path is {rmse} m off");
+    assert_eq!(doubts, Some(0), "the path is good");
     let silent = STEPS - measured.len() as u32;
     let health = health.context("health was told")?;
     assert_eq!((health.accepted as usize, health.failed), (measured.len() - 4, silent));

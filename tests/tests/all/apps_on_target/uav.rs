@@ -106,6 +106,7 @@ fn check<T: Scalar>(target: &'static Target) -> Result<()> {
             Message::Flight(flight) => measured.push(flight),
             Message::State(state) => states.push(state),
             Message::Health(counts) => health.push(counts),
+            Message::EstimateHealth(estimate) => assert_eq!(estimate.reasons, 0),
             other => panic!("{other:?} is not an aeroplane's"),
         }
     }

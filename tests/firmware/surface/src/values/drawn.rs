@@ -7,6 +7,9 @@ use kestirim_scalar::Scalar;
 
 use super::Whole;
 
+/// Whether what takes any numbers is called with `f32`, too: on the host always.
+pub const FLOATS: bool = true;
+
 thread_local! {
     static STATE: Cell<u64> = const { Cell::new(1) };
     /// One value in this many is extreme.

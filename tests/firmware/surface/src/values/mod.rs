@@ -12,9 +12,11 @@ use nalgebra::SMatrix;
 use rand_core::{Infallible, TryRng};
 
 #[cfg(not(target_os = "none"))]
-pub use drawn::{maybe, number, one_of, rounds, slice, slice_mut, start_from, try_on, whole};
+pub use drawn::{
+    FLOATS, maybe, number, one_of, rounds, slice, slice_mut, start_from, try_on, whole,
+};
 #[cfg(target_os = "none")]
-pub use opaque::{maybe, number, one_of, rounds, slice, slice_mut, try_on, whole};
+pub use opaque::{FLOATS, maybe, number, one_of, rounds, slice, slice_mut, try_on, whole};
 
 /// The value, hidden from the optimiser.
 #[inline(always)]
