@@ -2,6 +2,10 @@ use crate::Measurement;
 
 /// The likelihood of a measurement under a channel, for a filter.
 pub trait Likelihood<T> {
+    /// Whether [`Likelihood::log_likelihood_again`] is less work than [`Likelihood::log_likelihood`]; only then does a filter
+    /// have code for both.
+    const IS_LESS_AGAIN: bool = false;
+
     /// Logarithm of the density (per dB) of the measurement if the user is at `user` (m, in the plane of the
     /// measurements), up to a constant.
     fn log_likelihood(&self, measurement: &Measurement<T>, user: [T; 2]) -> T;

@@ -148,6 +148,8 @@ impl<'a, T, C, const N: usize> Within<'a, T, C, N> {
 }
 
 impl<T: Scalar, C: Likelihood<T>, const N: usize> Likelihood<T> for Within<'_, T, C, N> {
+    const IS_LESS_AGAIN: bool = true;
+
     #[inline]
     fn log_likelihood(&self, measurement: &Measurement<T>, user: [T; 2]) -> T {
         if self.area.contains(user) {

@@ -145,7 +145,11 @@ fn weigh<T: Scalar, C: Likelihood<T>, const L: usize, const D: usize>(
     is_first: bool,
 ) -> Result<Update<T>, kestirim_particle_filter::Error> {
     let seen = Seen { channel, measurement };
-    if is_first { lattice.weigh(&seen) } else { lattice.weigh(&SeenAgain(seen)) }
+    if is_first || !C::IS_LESS_AGAIN {
+        lattice.weigh(&seen)
+    } else {
+        lattice.weigh(&SeenAgain(seen))
+    }
 }
 
 /// The logarithm of the posterior density, up to a constant.
