@@ -136,6 +136,33 @@ where
     }
 }
 
+impl<T, C, const L: usize, const M: usize> Locator<T, L, M, 3, C>
+where
+    T: Scalar,
+    C: Likelihood<T>,
+{
+    /// [`Locator::log_posterior`] at one place with several levels (dB): what depends on the place alone is computed once for
+    /// each measurement.
+    pub fn log_posterior_of_levels<const K: usize>(
+        &self,
+        place: [T; 2],
+        levels: &[T; K],
+    ) -> [T; K] {
+        let mut sums = [T::ZERO; K];
+        for (index, measurement) in self.measurements.iter().enumerate() {
+            for (sum, level) in sums.iter_mut().zip(levels) {
+                let measurement = measurement.less(*level);
+                *sum += if index == 0 {
+                    self.channel.log_likelihood(&measurement, place)
+                } else {
+                    self.channel.log_likelihood_again(&measurement, place)
+                };
+            }
+        }
+        sums
+    }
+}
+
 /// Weighs the points of a lattice by a measurement. Points that the first one has shown to be impossible stay so.
 #[inline(always)]
 fn weigh<T: Scalar, C: Likelihood<T>, const L: usize, const D: usize>(

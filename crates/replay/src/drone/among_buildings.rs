@@ -11,7 +11,7 @@ use super::{Cloud, EnvironmentKind, Estimate, MOST, MOST_CORNERS, POINTS, Quanti
 /// The range of possible transmitter levels on either side of the nominal one, dB.
 const LEVELS_DB: f64 = 100.0;
 /// The number of levels over which the density is summed.
-const LEVELS: u32 = 41;
+const LEVELS: usize = 41;
 /// The range of possible common errors of path losses, in standard deviations of the calibration.
 const LIKELY: f64 = 2.0;
 /// Lower limits of the standard deviation of a measurement that are considered in addition to the thesis' own (a tenth
@@ -160,16 +160,17 @@ impl<'h, 'a> Believed<'h, 'a> {
     /// true one is unknown.
     fn covers(&self, truth: [f64; 2]) -> Option<bool> {
         let ([.., level], [.., deviation]) = self.moments();
-        let levels = (0..LEVELS)
-            .map(|k| level + deviation * (8.0 * f64::from(k) / f64::from(LEVELS - 1) - 4.0));
+        let levels: [f64; LEVELS] = std::array::from_fn(|k| {
+            level + deviation * (8.0 * k as f64 / (LEVELS - 1) as f64 - 4.0)
+        });
         let counting =
             self.hypotheses.iter().zip(&self.shares).filter(|(_, it)| **it > LEAST_SHARE);
         let counting: Vec<_> = counting.collect();
-        let density = |[x, y]: [f64; 2]| {
-            let at = |level: f64| {
-                counting.iter().map(move |(it, _)| it.locator.log_posterior(&[x, y, level]))
+        let density = |place: [f64; 2]| {
+            let of = |(hypothesis, _): &(&Hypothesis<'_>, _)| {
+                hypothesis.locator.log_posterior_of_levels(place, &levels)
             };
-            log_sum(levels.clone().flat_map(at))
+            log_sum(counting.iter().flat_map(of))
         };
         let mut places = Vec::new();
         for (hypothesis, share) in &counting {

@@ -3,7 +3,7 @@
 use kestirim_air_to_ground::{Channel, Environment, FreeSpace, Likelihood, Measurement};
 use kestirim_particle_filter::{Error as FilterError, Region};
 use kestirim_scalar::{Q16_16, Scalar};
-use kestirim_user_locator::{Area, Beacon, BeaconSearch, Error, Within};
+use kestirim_user_locator::{Area, Beacon, BeaconSearch, Error, Locator, Within};
 use proptest::prelude::*;
 
 type Outcome = Result<(), Error>;
@@ -63,6 +63,78 @@ fn no_user_is_outside_of_a_channels_area() -> Outcome {
     let expected = channel.log_likelihood(&measurement, inside);
     assert_eq!(within.log_likelihood(&measurement, inside), expected);
     assert_eq!(within.log_likelihood(&measurement, outside), f64::NEG_INFINITY);
+    Ok(())
+}
+
+/// A channel whose border is looked at with every measurement.
+struct EachTime<'a, T>(Within<'a, T, Channel<T>, 6>);
+
+impl<T: Scalar> Likelihood<T> for EachTime<'_, T> {
+    fn log_likelihood(&self, measurement: &Measurement<T>, user: [T; 2]) -> T {
+        self.0.log_likelihood(measurement, user)
+    }
+}
+
+fn check_border<T: Scalar>() -> Outcome {
+    const USER: [f64; 2] = [130.0, 60.0];
+    let area = polygon::<T>(&NOTCHED.map(|corner| corner.map(|metres| metres * 100.0)))?;
+    let truth = Channel::new(&Environment::<f64>::urban(), 0.15)?;
+    let channel = Channel::new(&Environment::<T>::urban(), T::from_f64(0.15))?;
+    let within = Within::new(channel, &area);
+    let least = T::from_f64(-1000.0);
+    let mut once = Locator::<T, 400, 40, 2, _>::new(within, area.region());
+    let mut each_time = Locator::<T, 400, 40, 2, _>::new(EachTime(within), area.region());
+    for k in 0..20 {
+        let place = [20.0 * f64::from(k), 200.0 + f64::from(k * k)];
+        let distance = (place[0] - USER[0]).hypot(place[1] - USER[1]);
+        let loss = truth.path_loss(distance, 120.0)?.line_of_sight_mean + f64::from(k % 3 - 1);
+        let place = place.map(T::from_f64);
+        let measurement = Measurement::new(place, T::from_f64(120.0), T::from_f64(loss))?;
+        let updates = (once.measure(&measurement)?, each_time.measure(&measurement)?);
+        assert_eq!(updates.0, updates.1);
+        let (lattice, same) = (once.posterior(), each_time.posterior());
+        assert_eq!(lattice.region(), same.region());
+        // In fixed point ln 0 is a large negative number.
+        let same = same.log_weights().iter().map(|log| log.max(least));
+        assert!(lattice.log_weights().iter().map(|log| log.max(least)).eq(same));
+        for (index, log) in lattice.log_weights().iter().enumerate() {
+            let point = lattice.point(index).expect("a point");
+            assert!(area.contains(point) || *log <= least, "{point:?}");
+        }
+    }
+    for place in [USER, [180.0, 90.0], [200.0, 200.0]].map(|place| place.map(T::from_f64)) {
+        let logs = [once.log_posterior(&place), each_time.log_posterior(&place)];
+        assert_eq!(logs[0].max(least), logs[1].max(least));
+        let regions = [0.5, 0.9].map(T::from_f64).map(|probability| {
+            (once.credible(&place, probability), each_time.credible(&place, probability))
+        });
+        assert!(regions.iter().all(|(once, each_time)| once.is_some() && once == each_time));
+    }
+    Ok(())
+}
+
+#[test]
+fn a_border_holds_for_all_measurements_once_it_was_looked_at() -> Outcome {
+    check_border::<f64>()?;
+    check_border::<f32>()?;
+    check_border::<Q16_16>()
+}
+
+#[test]
+fn several_levels_are_each_alone() -> Outcome {
+    let area = polygon::<f64>(&NOTCHED.map(|corner| corner.map(|metres| metres * 100.0)))?;
+    let within = Within::new(Channel::new(&Environment::<f64>::urban(), 0.15)?, &area);
+    let region = Region::new([0.0, 0.0, -20.0], [400.0, 400.0, 20.0])?;
+    let mut locator = Locator::<f64, 400, 40, 3, _>::new(within, &region);
+    for k in 0..5 {
+        let place = [70.0 * f64::from(k), 50.0];
+        locator.measure(&Measurement::new(place, 100.0, 85.0 + f64::from(k))?)?;
+    }
+    let levels = [-7.0, 0.0, 3.5];
+    for place in [[130.0, 60.0], [200.0, 200.0]] {
+        let each = levels.map(|level| locator.log_posterior(&[place[0], place[1], level]));
+        assert_eq!(locator.log_posterior_of_levels(place, &levels), each);
+    }
     Ok(())
 }
 

@@ -36,6 +36,7 @@ fn channels<T: Scalar>() {
     keep(Channel::with_least_sigma(&channel, number()));
     keep(Channel::log_likelihood(&channel, &measurement, numbers()));
     keep(<Channel<T> as Likelihood<T>>::log_likelihood(&channel, &measurement, numbers()));
+    keep(<Channel<T> as Likelihood<T>>::log_likelihood_again(&channel, &measurement, numbers()));
     if let Ok(loss) = any(Channel::path_loss(&channel, number(), number())) {
         keep(PathLoss::mean(&loss));
         keep(PathLoss::sigma(&loss));

@@ -55,12 +55,23 @@ fn locates<
     Some(())
 }
 
+fn levels<T: Scalar, const L: usize, const M: usize>() -> Option<()> {
+    let mut locator = any(Locator::<T, L, M, 3>::new(channel()?, &region()?));
+    let measurement = measurement()?;
+    for _ in 0..rounds() {
+        try_on(&mut locator, |locator| Locator::measure(locator, &measurement));
+    }
+    keep(Locator::log_posterior_of_levels(&locator, numbers(), &numbers::<T, 5>()));
+    Some(())
+}
+
 fn locators<T: Scalar, const L: usize, const M: usize, const D: usize>() {
     let Some(channel) = channel::<T>() else { return };
     keep(locates::<T, _, L, M, D>(channel));
     let Ok(doubted) = any(Contaminated::new(channel, number())) else { return };
     keep(locates::<T, _, L, M, D>(doubted));
     keep(publishes::<T, L>(channel));
+    keep(levels::<T, L, M>());
 }
 
 fn publishes<T: Scalar, const L: usize>(channel: Channel<T>) -> Option<()> {
