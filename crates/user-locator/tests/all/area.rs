@@ -16,6 +16,11 @@ fn polygon<T: Scalar>(corners: &[[f64; 2]]) -> Result<Area<T, 6>, Error> {
     Area::new(&corners)
 }
 
+/// The notched square with sides of 400 m.
+fn notched<T: Scalar>() -> Result<Area<T, 6>, Error> {
+    polygon(&NOTCHED.map(|corner| corner.map(|metres| metres * 100.0)))
+}
+
 fn check_polygon<T: Scalar>() -> Outcome {
     let area = polygon::<T>(&NOTCHED)?;
     let contains = |place: [f64; 2]| area.contains(place.map(T::from_f64));
@@ -56,7 +61,7 @@ fn corners_that_enclose_nothing_are_refused() {
 #[test]
 fn no_user_is_outside_of_a_channels_area() -> Outcome {
     let channel = Channel::new(&Environment::<f64>::urban(), 0.15)?;
-    let area = polygon::<f64>(&NOTCHED.map(|corner| corner.map(|metres| metres * 100.0)))?;
+    let area = notched::<f64>()?;
     let within = Within::new(channel, &area);
     let measurement = Measurement::new([100.0, 100.0], 100.0, 95.0)?;
     let (inside, outside) = ([50.0, 50.0], [200.0, 200.0]);
@@ -77,7 +82,7 @@ impl<T: Scalar> Likelihood<T> for EachTime<'_, T> {
 
 fn check_border<T: Scalar>() -> Outcome {
     const USER: [f64; 2] = [130.0, 60.0];
-    let area = polygon::<T>(&NOTCHED.map(|corner| corner.map(|metres| metres * 100.0)))?;
+    let area = notched::<T>()?;
     let truth = Channel::new(&Environment::<f64>::urban(), 0.15)?;
     let channel = Channel::new(&Environment::<T>::urban(), T::from_f64(0.15))?;
     let within = Within::new(channel, &area);
@@ -122,7 +127,7 @@ fn a_border_holds_for_all_measurements_once_it_was_looked_at() -> Outcome {
 
 #[test]
 fn several_levels_are_each_alone() -> Outcome {
-    let area = polygon::<f64>(&NOTCHED.map(|corner| corner.map(|metres| metres * 100.0)))?;
+    let area = notched::<f64>()?;
     let within = Within::new(Channel::new(&Environment::<f64>::urban(), 0.15)?, &area);
     let region = Region::new([0.0, 0.0, -20.0], [400.0, 400.0, 20.0])?;
     let mut locator = Locator::<f64, 400, 40, 3, _>::new(within, &region);
