@@ -11,10 +11,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{Line, Results, Table, code, microseconds, reasons, rows, sentences, values};
 use crate::error::{KestirimError, refused, unknown};
-
-/// The stack size of a thread that estimates, bytes: lattices of thousands of points are moved on the stack before they
-/// are on the heap.
-const STACK_BYTES: usize = 16 << 20;
+use crate::stack;
 
 /// The range of transmitter frequencies, Hz.
 const LOWEST_HZ: f64 = 30e6;
@@ -72,9 +69,7 @@ pub(crate) fn drone<'py>(
             let doubts = doubts.map(|doubt| doubt.sentence(&name, quantity)).collect();
             Ok(Found { stops, estimates, doubts, findings })
         };
-        let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(search);
-        let thread = thread.map_err(|error| refused(format!("no thread: {error}")))?;
-        thread.join().map_err(|_| refused("the search ended unexpectedly"))?
+        stack::with_much(search)
     })?;
     found.results(py)
 }

@@ -14,9 +14,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{Results, code, reasons};
 use crate::error::{KestirimError, refused, unknown};
-
-/// The stack size of the thread that filters, bytes.
-const STACK_BYTES: usize = 16 << 20;
+use crate::stack;
 
 /// Computes the positions of a receiver.
 #[pyfunction]
@@ -90,9 +88,7 @@ pub(crate) fn gnss<'py>(
             }
             Ok(Found { followed, warnings, doubts })
         };
-        let thread = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(run);
-        let thread = thread.map_err(|error| refused(format!("no thread: {error}")))?;
-        thread.join().map_err(|_| refused("the filter ended unexpectedly"))?
+        stack::with_much(run)
     })?;
     found.results(py)
 }

@@ -16,6 +16,7 @@ mod gnss;
 mod logs;
 mod pedestrian;
 mod robot;
+mod stack;
 mod uav;
 
 use pyo3::prelude::*;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from typing import Any, Callable
 
 import numpy as np
@@ -56,6 +57,24 @@ def test_particles_draw_the_same_numbers() -> None:
     fewer = kestirim.ParticleFilter(200, [-5.0, -5.0], [5.0, 5.0])
     with pytest.raises(kestirim.KestirimError, match="a cloud of 200 particles, found one of a cloud of 300"):
         fewer.restore(awake.snapshot())
+
+
+def test_a_thread_with_little_stack_is_enough() -> None:
+    clouds: list[kestirim.ParticleFilter] = []
+
+    def make() -> None:
+        cloud = kestirim.ParticleFilter(8192, 6 * [-5.0], 6 * [5.0])
+        cloud.restore(cloud.snapshot())
+        clouds.append(cloud)
+
+    usual = threading.stack_size(256 << 10)
+    thread = threading.Thread(target=make)
+    try:
+        thread.start()
+    finally:
+        threading.stack_size(usual)
+    thread.join()
+    assert clouds[0].states.shape == (8192, 6)
 
 
 def test_an_observer_goes_on_to_the_bit() -> None:

@@ -14,6 +14,7 @@ use super::of_size;
 use super::sleep::{loaded, stored};
 use crate::arrays::{Line, Table, values};
 use crate::error::{KestirimError, refused, unknown};
+use crate::stack;
 
 /// The largest number of particles.
 const MOST: usize = 8192;
@@ -149,8 +150,9 @@ impl Cloud {
         }
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
         let (low, high) = (values(&low)?, values(&high)?);
-        let cloud =
-            of_size!("coordinates", low.len(), [1 2 3 4 5 6], build(count, low, high, &mut rng))?;
+        let cloud = stack::with_much(
+            || of_size!("coordinates", low.len(), [1 2 3 4 5 6], build(count, low, high, &mut rng)),
+        )?;
         Ok(Self { cloud, rng })
     }
 
@@ -212,11 +214,12 @@ impl Cloud {
     }
 
     fn snapshot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        Ok(PyBytes::new(py, &self.cloud.snapshot(&self.rng)?))
+        let snapshot = stack::with_much(|| self.cloud.snapshot(&self.rng))?;
+        Ok(PyBytes::new(py, &snapshot))
     }
 
     fn restore(&mut self, snapshot: &[u8]) -> PyResult<()> {
-        self.rng = self.cloud.restore(snapshot)?;
+        self.rng = stack::with_much(|| self.cloud.restore(snapshot))?;
         Ok(())
     }
 }
