@@ -1,6 +1,18 @@
-//! Derives sensor values from a fuzzer's bytes.
+//! Feeds a fuzzer's bytes to readers and trackers, one module a target. The tests across crates feed the seeds.
 
-use libfuzzer_sys::arbitrary::{Result, Unstructured};
+pub mod drone;
+pub mod flight_log;
+pub mod gnss_observations;
+pub mod gnss_products;
+pub mod inertial_log;
+pub mod level_log;
+pub mod pedestrian;
+pub mod range_log;
+pub mod robot;
+pub mod telemetry;
+pub mod uav;
+
+use arbitrary::{Result, Unstructured};
 
 /// A number: mostly a plausible sensor value, sometimes arbitrary.
 ///

@@ -13,6 +13,7 @@ mod drone_thesis;
 mod faults;
 mod firmware;
 mod functions_on_target;
+mod fuzz_seeds;
 mod gnss_app;
 mod gnss_broadcast;
 mod gnss_figures;

@@ -1,10 +1,6 @@
-//! Reads arbitrary bytes as observations: RINEX, Compact RINEX, receiver streams, compressed or not.
+//! `fuzz::gnss_observations` for libFuzzer.
 #![no_main]
 
-use kestirim_gnss_files::{Observations, Text};
 use libfuzzer_sys::fuzz_target;
 
-fuzz_target!(|bytes: &[u8]| {
-    let Ok(text) = Text::unpack("a", bytes.to_vec()) else { return };
-    let _ = Observations::parse(&text);
-});
+fuzz_target!(|bytes: &[u8]| fuzz::gnss_observations::feed(bytes));
