@@ -5,7 +5,8 @@ use std::net::UdpSocket;
 use std::path::Path;
 
 use host_sim::commands::{self, live::Live};
-use kestirim_telemetry::Imu;
+use kestirim_health::{Health, Reason};
+use kestirim_telemetry::{EstimateHealth, Imu};
 use serde_json::Value;
 
 use crate::live_senders::{played, played_with, walk, warns};
@@ -89,6 +90,28 @@ fn two_senders_with_one_device_number_are_told() {
     }
     let report = played(&desk, &[of(7, 0, &first), of(7, 0, &second[..500])].concat());
     assert!(warns(&report, "does not count its boots"), "{report}");
+}
+
+#[test]
+fn each_device_tells_how_far_it_relies_on_its_own_estimate() {
+    let desk = Desk::new();
+    let walk = walk(1);
+    let lists: Vec<_> = [(7, Health::GOOD), (8, Reason::Axes.into())]
+        .into_iter()
+        .map(|(device, health)| {
+            let reasons = health.bits();
+            let told = EstimateHealth { time_us: walk[walk.len() - 1].time_us, reasons };
+            [of(device, 1, &walk), vec![frame_of(device, 1, told, walk.len())]].concat()
+        })
+        .collect();
+    let report = played(&desk, &in_turn(&lists));
+    for (device, own) in [(7, "good"), (8, "bad: axes")] {
+        let row = row(&report, device);
+        // What is estimated here has a health of its own.
+        assert_eq!((&row["own_health"], &row["health"]["state"]), (&own.into(), &"good".into()));
+    }
+    assert!(warns(&report, "device 8 does not rely on its own estimate: bad: axes"), "{report}");
+    assert!(!warns(&report, "device 7"), "{report}");
 }
 
 #[test]

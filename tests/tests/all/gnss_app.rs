@@ -12,8 +12,10 @@ use embedded_io::{ErrorType, Read, ReadReady, Write};
 use gnss_app::{App, Broadcasts, Corrections, Source, Unusable, site};
 use kestirim_gnss_files::{Ephemeris, Epoch, Message, Navigation, Observations, Text};
 use kestirim_gnss_ppp::{Carriers, Geodetic, Slip};
+use kestirim_health::{Health, Reason};
 use kestirim_ppp_filter::Slipped;
 use kestirim_replay::gnss::ephemeris;
+use kestirim_telemetry::{Message as Sent, Receiver as Telemetry};
 use kestirim_tests::gnss::ESBC;
 use kestirim_tests::recordings::folder_of;
 use nalgebra::Vector3;
@@ -28,15 +30,29 @@ const HEIGHT: f64 = 0.216;
 /// Every so many epochs each satellite sends its ephemeris: a receiver repeats it every half minute.
 const REPEATED: usize = 10;
 
-/// Telemetry that nobody reads.
-struct Sink;
+/// Telemetry, of which the health of the estimates is read.
+#[derive(Default)]
+struct Line(Vec<u8>);
 
-impl ErrorType for Sink {
+impl Line {
+    /// How far each epoch's estimate can be relied upon, as sent.
+    fn healths(&self) -> Vec<Health> {
+        let mut receiver = Telemetry::new();
+        let healths = receiver.frames(&self.0).filter_map(|frame| match frame.message {
+            Sent::EstimateHealth(health) => Health::from_bits(health.reasons),
+            _ => None,
+        });
+        healths.collect()
+    }
+}
+
+impl ErrorType for &mut Line {
     type Error = std::convert::Infallible;
 }
 
-impl Write for Sink {
+impl Write for &mut Line {
     fn write(&mut self, bytes: &[u8]) -> Result<usize, Self::Error> {
+        self.0.extend(bytes);
         Ok(bytes.len())
     }
 
@@ -161,17 +177,22 @@ fn marker() -> Vector3<f64> {
 /// Runs the application, which leaves out an unhealthy satellite and has no position in some first epochs. Returns the position's
 /// error and deviation after the last epoch, m, and the largest quotient of any two.
 fn run(receiver: &[u8], source: impl Source, unhealthy: u8, without: usize) -> [f64; 3] {
-    let mut app = App::new(receiver, source, Sink);
+    let mut line = Line::default();
+    let mut app = App::new(receiver, source, &mut line);
     let truth = marker();
-    let (mut epochs, mut told) = (0_usize, Vec::new());
+    let (mut epochs, mut told, mut healths) = (0_usize, Vec::new(), Vec::new());
     while let Some(epoch) = app.poll(0).expect("no port fails") {
         epochs += 1;
         let left_out = epoch.unused.iter().find(|it| it.satellite == unhealthy);
         assert!(epochs < 3 || left_out.is_none_or(|it| it.reason == Unusable::Unhealthy));
-        if let Ok(solution) = epoch.solution {
-            let sigma = solution.covariance.trace().sqrt();
-            told.push(((solution.position - truth).norm(), sigma));
-        }
+        healths.push(match epoch.solution {
+            Ok(solution) => {
+                let sigma = solution.covariance.trace().sqrt();
+                told.push(((solution.position - truth).norm(), sigma));
+                solution.health.in_short()
+            }
+            Err(_) => Reason::Dropout.into(),
+        });
     }
     let (last, sigma) = *told.last().expect("a position");
     let most = told.iter().map(|(error, sigma)| error / sigma).fold(0.0, f64::max);
@@ -180,6 +201,7 @@ fn run(receiver: &[u8], source: impl Source, unhealthy: u8, without: usize) -> [
         told.len()
     );
     assert_eq!((epochs, told.len()), (EPOCHS, EPOCHS - without));
+    assert_eq!(line.healths(), healths);
     [last, sigma, most]
 }
 
@@ -214,7 +236,8 @@ fn a_lock_is_counted_from_the_satellites_own_last_epoch() {
         observed.loss_of_lock[0] = index == 2;
     }
     let receiver = stream(&observations, &navigation, 0);
-    let mut app = App::new(&*receiver, Broadcasts::default(), Sink);
+    let mut line = Line::default();
+    let mut app = App::new(&*receiver, Broadcasts::default(), &mut line);
     for index in 0..=ABSENT.end {
         let epoch = app.poll(0).expect("no port fails").expect("an epoch");
         if index == ABSENT.end {

@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 
+use kestirim_health::Health;
 use kestirim_telemetry::{Frame, Order, Origin};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::feed::Feed;
 use super::order::Sorter;
+use super::picture::in_words;
 use super::state::State;
 use crate::Error;
 use crate::numbers::{Numbers, Place};
@@ -37,6 +39,27 @@ pub struct Row {
     pub position: Option<[f64; 3]>,
     /// For a walk, its horizontal length from stance to stance (m).
     pub path_length_m: Option<f64>,
+    /// How far the estimate made here can be relied upon.
+    pub health: Option<Health>,
+    /// How far the device relies on its own estimate: the reasons as bits, in JSON in words.
+    #[serde(serialize_with = "words")]
+    pub own_health: Option<u16>,
+}
+
+#[allow(clippy::ref_option, clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
+fn words<S: Serializer>(reasons: &Option<u16>, serializer: S) -> Result<S::Ok, S::Error> {
+    reasons.map(in_words).serialize(serializer)
+}
+
+impl Row {
+    /// The health of the estimate made here, and of the device's own, in words.
+    pub(super) fn healths(&self) -> [String; 2] {
+        let unknown = || "–".to_owned();
+        [
+            self.health.map_or_else(unknown, |health| health.to_string()),
+            self.own_health.map_or_else(unknown, in_words),
+        ]
+    }
 }
 
 /// A sender.
@@ -149,6 +172,8 @@ impl Device {
             time_us: state.time_us,
             position: state.position,
             path_length_m: state.path_length_m,
+            health: state.estimate_health,
+            own_health: state.senders_doubts,
             ..self.row
         }
     }

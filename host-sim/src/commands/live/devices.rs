@@ -1,6 +1,7 @@
 //! All devices of a line together.
 
 use super::device::Row;
+use super::picture::{in_words, is_bad};
 use super::report::Counts;
 use super::state::State;
 use crate::numbers::TOLD;
@@ -21,6 +22,16 @@ impl State {
         let beyond = self.beyond;
         let beyond = format!("{beyond} frames were left out: they are of too many devices");
         told.chain((self.beyond > 0).then_some(beyond))
+    }
+
+    /// Warnings about devices that are not shown in detail and do not rely on their own estimates.
+    pub(super) fn doubted(&self) -> impl Iterator<Item = String> {
+        let others = self.devices.iter().filter(|(number, _)| Some(**number) != self.shown);
+        let doubts = others.filter_map(|(number, row)| Some((number, row.own_health?)));
+        let doubted = doubts.filter(|(_, reasons)| is_bad(*reasons)).take(TOLD_DEVICES);
+        doubted.map(|(number, reasons)| {
+            format!("device {number} does not rely on its own estimate: {}", in_words(reasons))
+        })
     }
 
     /// The sum of all devices' counters.
@@ -46,7 +57,13 @@ impl State {
             let outcomes = [row.taken, row.refused].map(|count| count.to_string());
             let place = [number(time_s), x, y, z, number(row.path_length_m)];
             let first = [device.to_string(), row.boot.to_string()];
-            first.into_iter().chain(counts).chain(outcomes).chain(place).collect()
+            first
+                .into_iter()
+                .chain(counts)
+                .chain(outcomes)
+                .chain(place)
+                .chain(row.healths())
+                .collect()
         };
         let header = [
             "device",
@@ -61,6 +78,8 @@ impl State {
             "y, m",
             "z, m",
             "path, m",
+            "health",
+            "its own",
         ];
         let caption = "Each device has an estimator of its own; the setting device says which is shown in detail.";
         let sheet = Sheet::new("live-devices", "Devices", &header).caption(caption);

@@ -14,6 +14,12 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// The colour of the sender's own estimate.
 const SENDERS: Colour = Colour::Other(3);
 
+/// Whether a sender's estimate may be wrong by far more than it says; so may one with a reason of a later version.
+pub(super) fn is_bad(reasons: u16) -> bool {
+    let health = kestirim_health::Health::from_bits(reasons);
+    health.is_none_or(|health| health.state() == kestirim_health::State::Bad)
+}
+
 /// The health of a sender's estimate in words.
 pub(super) fn in_words(reasons: u16) -> String {
     let unknown = || "a reason that this version does not know".to_owned();

@@ -130,13 +130,17 @@ impl Report {
             "taken in",
             "refused",
             "position",
+            "health",
+            "its own",
         ]);
         for DeviceRow { device, row } in self.devices.iter().take(SHOWN) {
             let position = row.position;
             let position = position.map(|[x, y, z]| format!("{x:.2} m, {y:.2} m, {z:.2} m"));
             let counts = [*device, row.boot, row.received, row.lost, row.another].map(u64::from);
             let counts = counts.into_iter().chain([row.taken, row.refused]);
-            table.add_row(counts.map(|it| it.to_string()).chain([position.unwrap_or_default()]));
+            let position = [position.unwrap_or_default()];
+            let counts = counts.map(|it| it.to_string());
+            table.add_row(counts.chain(position).chain(row.healths()));
         }
         write!(f, "\n{table}")?;
         let more = self.devices.len().saturating_sub(SHOWN);

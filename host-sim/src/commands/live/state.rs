@@ -13,7 +13,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::device::Row;
 use super::options::Following;
-use super::picture::in_words;
+use super::picture::{in_words, is_bad};
 use super::report::{Counts, DeviceRow, Report};
 use super::thinned::Thinned;
 use super::window::Window;
@@ -56,6 +56,8 @@ pub(super) struct State {
     /// The position estimate on the map (m).
     pub(super) place: Option<[f64; 2]>,
     pub(super) path_length_m: Option<f64>,
+    /// How far the estimate made here can be relied upon.
+    pub(super) estimate_health: Option<kestirim_health::Health>,
     pub(super) facts: Vec<(String, String)>,
     assumptions: Vec<String>,
     suspicions: Vec<String>,
@@ -107,6 +109,7 @@ impl State {
             position: None,
             place: None,
             path_length_m: None,
+            estimate_health: None,
             facts: Vec::new(),
             assumptions: plan.map(Plan::assumptions).unwrap_or_default(),
             suspicions: Vec::new(),
@@ -216,13 +219,17 @@ impl State {
         self.move_to(Some(estimator));
         self.path_length_m = estimator.path_length_m();
         self.facts = estimator.facts();
-        let health = estimator.health().map(|health| ("health".to_owned(), health.to_string()));
+        self.estimate_health = estimator.health();
+        let health = self.estimate_health.map(|health| ("health".to_owned(), health.to_string()));
         self.facts.extend(health);
         self.suspicions = estimator.warnings();
     }
 
     /// Adds a message about the sender itself.
     pub(super) fn tell(&mut self, message: &Message) {
+        if let Message::EstimateHealth(EstimateHealth { reasons, .. }) = *message {
+            self.senders_doubts = Some(reasons);
+        }
         if self.is_brief {
             return;
         }
@@ -246,10 +253,6 @@ impl State {
             }
             Message::Health(health) => {
                 self.health = Some(health);
-                true
-            }
-            Message::EstimateHealth(EstimateHealth { reasons, .. }) => {
-                self.senders_doubts = Some(reasons);
                 true
             }
             // A kind of message that is not drawn.
@@ -285,16 +288,15 @@ impl State {
         let ignored = (ignored > 0).then(|| {
             format!("{ignored} datagrams of a second sender were ignored: a port is for one sender (--udp)")
         });
-        let is_bad = |reasons: &u16| {
-            let health = kestirim_health::Health::from_bits(*reasons);
-            health.is_none_or(|health| health.state() == kestirim_health::State::Bad)
-        };
-        let doubts = self.senders_doubts.filter(is_bad);
+        let doubts = self.senders_doubts.filter(|reasons| is_bad(*reasons));
         let doubts = doubts.map(|reasons| {
             format!("the sender does not rely on its own estimate: {}", in_words(reasons))
         });
-        let told =
-            [anew, left_out, ignored, doubts].into_iter().flatten().chain(self.shared_numbers());
+        let told = [anew, left_out, ignored, doubts]
+            .into_iter()
+            .flatten()
+            .chain(self.shared_numbers())
+            .chain(self.doubted());
         self.assumptions.iter().chain(&self.suspicions).cloned().chain(told).collect()
     }
 

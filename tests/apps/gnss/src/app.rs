@@ -3,6 +3,7 @@
 use embedded_io::{Read, ReadReady, Write};
 use heapless::Vec;
 use kestirim_gnss_ppp::GpsTime;
+use kestirim_health::Reason;
 use kestirim_ppp_filter::{
     Health as Doubts, Lean, PppFilter, SatelliteObservation, Solution, states,
 };
@@ -101,10 +102,14 @@ where
                     .then(|| libm::sqrt(solution.covariance.trace() / 3.0) as f32),
             };
             self.telemetry.send(position).map_err(|_| Error::Telemetry)?;
-            let reasons = solution.health.in_short().bits();
-            let health = EstimateHealth { time_us, reasons };
-            self.telemetry.send(health).map_err(|_| Error::Telemetry)?;
         }
+        let doubts = match &epoch.solution {
+            Ok(solution) => solution.health.in_short(),
+            // Whatever was sent before is not of now.
+            Err(_) => Reason::Dropout.into(),
+        };
+        let health = EstimateHealth { time_us, reasons: doubts.bits() };
+        self.telemetry.send(health).map_err(|_| Error::Telemetry)?;
         let Self { accepted, rejected, .. } = *self;
         let failed = self.receiver.damaged().saturating_add(self.source.damaged());
         let health = Health { time_us, accepted, rejected, failed };
