@@ -6,7 +6,9 @@ use kestirim_adaptive_kalman::{
 use kestirim_kalman::{ConstantVelocity, Covariance, Gaussian, SparseRow};
 use kestirim_scalar::{Q12_20, Scalar};
 
-use super::values::{FLOATS, any, call_each, keep, matrix, number, numbers, rounds, try_on, whole};
+use super::values::{
+    LONG_FORM, any, call_each, keep, matrix, number, numbers, rounds, try_on, whole,
+};
 
 fn covariance<T: Scalar, const N: usize>() -> Covariance<T, N> {
     any(Covariance::from_variances(&numbers()))
@@ -84,7 +86,7 @@ fn all_of<T: Scalar>() {
 
 /// Calls everything in this module.
 pub fn run() {
-    if FLOATS {
+    if LONG_FORM {
         call_each([all_of::<f32>]);
     }
     call_each([all_of::<Q12_20>]);

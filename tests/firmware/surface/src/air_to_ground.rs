@@ -6,7 +6,7 @@ use kestirim_air_to_ground::{
 };
 use kestirim_scalar::{Q16_16, Scalar};
 
-use super::values::{FLOATS, any, call_each, keep, maybe, number, numbers, slice};
+use super::values::{LONG_FORM, any, call_each, keep, maybe, number, numbers, slice};
 
 fn environment<T: Scalar>() -> Environment<T> {
     let way = || Propagation { excess_loss: number(), sigma: number(), sigma_decay: number() };
@@ -102,7 +102,7 @@ fn all_of<T: Scalar>() {
 
 /// Calls everything in this module.
 pub fn run() {
-    if FLOATS {
+    if LONG_FORM {
         call_each([all_of::<f32>]);
     }
     call_each([all_of::<Q16_16>]);

@@ -3,7 +3,9 @@
 use kestirim_attitude::{Ahrs, Gains, Orientation};
 use kestirim_scalar::{Q12_20, Scalar};
 
-use super::values::{FLOATS, any, call_each, keep, matrix, maybe, number, numbers, rounds, try_on};
+use super::values::{
+    LONG_FORM, any, call_each, keep, matrix, maybe, number, numbers, rounds, try_on,
+};
 
 fn orientations<T: Scalar>() {
     keep::<Orientation<T>>(Orientation::identity());
@@ -40,7 +42,7 @@ fn all_of<T: Scalar>() {
 
 /// Calls everything in this module.
 pub fn run() {
-    if FLOATS {
+    if LONG_FORM {
         call_each([all_of::<f32>]);
     }
     call_each([all_of::<Q12_20>]);

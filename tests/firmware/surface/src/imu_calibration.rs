@@ -5,7 +5,7 @@ use kestirim_imu_calibration::{
 };
 use kestirim_scalar::{Q12_20, Scalar};
 
-use super::values::{FLOATS, any, call_each, keep, matrix, number, one_of, rounds, try_on};
+use super::values::{LONG_FORM, any, call_each, keep, matrix, number, one_of, rounds, try_on};
 
 fn triad<T: Scalar>() -> Triad<T> {
     any(Triad { offset: matrix(), matrix: matrix() })
@@ -74,7 +74,7 @@ fn all_of<T: Scalar>() {
 
 /// Calls everything in this module.
 pub fn run() {
-    if FLOATS {
+    if LONG_FORM {
         call_each([all_of::<f32>]);
     }
     call_each([all_of::<Q12_20>]);

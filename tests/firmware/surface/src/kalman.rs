@@ -7,7 +7,7 @@ use kestirim_kalman::{
 use kestirim_scalar::{Q12_20, Scalar};
 
 use super::values::{
-    FLOATS, any, call_each, keep, matrix, maybe, number, numbers, option, rounds, slice, try_on,
+    LONG_FORM, any, call_each, keep, matrix, maybe, number, numbers, option, rounds, slice, try_on,
     whole,
 };
 
@@ -131,7 +131,7 @@ fn all_of<T: Scalar>() {
 
 /// Calls everything in this module.
 pub fn run() {
-    if FLOATS {
+    if LONG_FORM {
         call_each([all_of::<f32>]);
     }
     call_each([all_of::<Q12_20>]);

@@ -8,7 +8,7 @@ use kestirim_luenberger::{
 use kestirim_scalar::{Q16_16, Scalar};
 use nalgebra::{ArrayStorage, SMatrix};
 
-use super::values::{FLOATS, any, call_each, keep, matrix, try_on};
+use super::values::{LONG_FORM, any, call_each, keep, matrix, try_on};
 
 const fn filled<const R: usize, const C: usize>() -> SMatrix<f64, R, C> {
     SMatrix::from_array_storage(ArrayStorage([[0.5; R]; C]))
@@ -92,7 +92,7 @@ fn all_of<T: Scalar>() {
 
 /// Calls everything in this module.
 pub fn run() {
-    if FLOATS {
+    if LONG_FORM {
         call_each([all_of::<f32>]);
     }
     call_each([all_of::<Q16_16>]);

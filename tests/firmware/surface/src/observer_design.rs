@@ -6,7 +6,7 @@ use kestirim_observer_design::{
     tustin, zero_order_hold,
 };
 
-use super::values::{any, call_each, keep, matrix, number};
+use super::values::{LONG_FORM, any, call_each, keep, matrix, number};
 
 fn complex() -> Complex<f64> {
     Complex { re: number(), im: number() }
@@ -54,17 +54,21 @@ fn responds<const N: usize, const M: usize, const P: usize>() {
 
 /// Calls everything in this module.
 pub fn run() {
+    if LONG_FORM {
+        call_each([
+            discretises::<4, 2>,
+            analyses::<4, 2, 3>,
+            places::<4, 1>,
+            places::<9, 5>,
+            settles::<4, 3>,
+            responds::<4, 2, 3>,
+        ]);
+    }
     call_each([
-        discretises::<4, 2>,
         discretises::<9, 3>,
-        analyses::<4, 2, 3>,
         analyses::<9, 3, 5>,
-        places::<4, 1>,
         places::<4, 3>,
-        places::<9, 5>,
-        settles::<4, 3>,
         settles::<9, 5>,
-        responds::<4, 2, 3>,
         responds::<9, 3, 5>,
     ]);
 }

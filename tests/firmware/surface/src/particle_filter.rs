@@ -7,7 +7,7 @@ use kestirim_particle_filter::{
 use kestirim_scalar::{Q16_16, Scalar};
 
 use super::values::{
-    AnyRng, FLOATS, any, call_each, keep, number, numbers, one_of, rounds, slice, slice_mut,
+    AnyRng, LONG_FORM, any, call_each, keep, number, numbers, one_of, rounds, slice, slice_mut,
     try_on, whole,
 };
 
@@ -143,20 +143,15 @@ fn points<T: Scalar, const D: usize, const N: usize>() {
 }
 
 fn all_of<T: Scalar>() {
-    call_each([
-        draws::<T>,
-        particles::<T, 2, 64>,
-        particles::<T, 4, 9>,
-        steps::<T, 2, 64>,
-        steps::<T, 4, 9>,
-        points::<T, 2, 64>,
-        points::<T, 4, 9>,
-    ]);
+    if LONG_FORM {
+        call_each([particles::<T, 2, 64>, steps::<T, 2, 64>, points::<T, 2, 64>]);
+    }
+    call_each([draws::<T>, particles::<T, 4, 9>, steps::<T, 4, 9>, points::<T, 4, 9>]);
 }
 
 /// Calls everything in this module.
 pub fn run() {
-    if FLOATS {
+    if LONG_FORM {
         call_each([all_of::<f32>]);
     }
     call_each([all_of::<Q16_16>]);

@@ -13,8 +13,8 @@ use kestirim_pedestrian::{
 use kestirim_scalar::{Q12_20, Scalar};
 
 use super::values::{
-    FLOATS, any, call_each, keep, matrix, number, one_of, rounds, slice, slice_mut, try_on, whole,
-    yes_or_no,
+    LONG_FORM, any, call_each, keep, matrix, number, one_of, rounds, slice, slice_mut, try_on,
+    whole, yes_or_no,
 };
 
 fn config<T: Scalar>() -> Config<T> {
@@ -160,7 +160,7 @@ fn all_of<T: Scalar>() {
 
 /// Calls everything in this module.
 pub fn run() {
-    if FLOATS {
+    if LONG_FORM {
         call_each([all_of::<f32>]);
     }
     call_each([all_of::<Q12_20>]);

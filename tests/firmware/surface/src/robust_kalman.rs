@@ -9,7 +9,8 @@ use kestirim_robust_kalman::{
 use kestirim_scalar::{Q12_20, Scalar};
 
 use super::values::{
-    FLOATS, any, call_each, keep, matrix, maybe, number, numbers, one_of, slice, slice_mut, whole,
+    LONG_FORM, any, call_each, keep, matrix, maybe, number, numbers, one_of, slice, slice_mut,
+    whole,
 };
 
 fn block() -> Block {
@@ -108,7 +109,7 @@ fn all_of<T: Scalar>() {
 
 /// Calls everything in this module.
 pub fn run() {
-    if FLOATS {
+    if LONG_FORM {
         call_each([all_of::<f32>]);
     }
     call_each([all_of::<Q12_20>]);

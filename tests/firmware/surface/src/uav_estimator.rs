@@ -10,7 +10,7 @@ use kestirim_uav_estimator::{
 use kestirim_uav_longitudinal::StateSpace;
 
 use super::values::{
-    FLOATS, any, call_each, keep, matrix, number, option, rounds, try_on, whole, yes_or_no,
+    LONG_FORM, any, call_each, keep, matrix, number, option, rounds, try_on, whole, yes_or_no,
 };
 
 fn plant() -> Discrete<4, 2> {
@@ -251,8 +251,8 @@ fn all_of<T: Scalar>() {
 
 /// Calls everything in this module.
 pub fn run() {
-    if FLOATS {
-        call_each([all_of::<f32>, all_of::<f64>]);
+    if LONG_FORM {
+        call_each([all_of::<f32>, all_of::<f64>, designs::<4>]);
     }
-    call_each([designs::<3>, designs::<4>, errors, all_of::<Q16_16>]);
+    call_each([designs::<3>, errors, all_of::<Q16_16>]);
 }

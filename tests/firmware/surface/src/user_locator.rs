@@ -15,7 +15,7 @@ use kestirim_user_locator::{
 };
 
 use super::values::{
-    AnyRng, FLOATS, any, call_each, keep, maybe, number, numbers, one_of, option, rounds, slice,
+    AnyRng, LONG_FORM, any, call_each, keep, maybe, number, numbers, one_of, option, rounds, slice,
     try_on, whole, yes_or_no,
 };
 
@@ -231,8 +231,10 @@ fn orbits<T: Scalar>() {
 /// The sizes are those of the particle filter, which is called with several; here each is compiled in both number
 /// types.
 fn all_of<T: Scalar>() {
+    if LONG_FORM {
+        call_each([locators::<T, 64, 8, 2>]);
+    }
     call_each([
-        locators::<T, 64, 8, 2>,
         locators::<T, 9, 3, 3>,
         beacons::<T, 3, 9>,
         confined::<T, 9>,
@@ -243,7 +245,7 @@ fn all_of<T: Scalar>() {
 
 /// Calls everything in this module.
 pub fn run() {
-    if FLOATS {
+    if LONG_FORM {
         call_each([all_of::<f32>]);
     }
     call_each([all_of::<Q16_16>]);

@@ -9,7 +9,7 @@ use kestirim_uwb_ranging::{
 };
 
 use super::values::{
-    FLOATS, any, call_each, keep, matrix, maybe, number, numbers, one_of, option, rounds, slice,
+    LONG_FORM, any, call_each, keep, matrix, maybe, number, numbers, one_of, option, rounds, slice,
     try_on, whole,
 };
 
@@ -183,7 +183,7 @@ fn all_of<T: Scalar>() {
 
 /// Calls everything in this module.
 pub fn run() {
-    if FLOATS {
+    if LONG_FORM {
         call_each([all_of::<f32>]);
     }
     call_each([times, all_of::<Q12_20>]);

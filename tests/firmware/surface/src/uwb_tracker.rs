@@ -9,7 +9,7 @@ use kestirim_uwb_tracker::{
 };
 
 use super::values::{
-    FLOATS, any, call_each, keep, matrix, maybe, number, numbers, one_of, option, rounds, slice,
+    LONG_FORM, any, call_each, keep, matrix, maybe, number, numbers, one_of, option, rounds, slice,
     try_on, whole,
 };
 
@@ -153,29 +153,33 @@ fn heights<T: Scalar, const A: usize>() {
 }
 
 fn all_of<T: Scalar>() {
+    if LONG_FORM {
+        call_each([
+            tracks::<T, 2, 4, 4>,
+            tracks::<T, 3, 7, 9>,
+            listens::<T, 2, 5, 4>,
+            drives::<T, 4>,
+            epochs::<T, 2, 4>,
+            heights::<T, 4>,
+            published::<T, 2, 4, 4>,
+        ]);
+    }
     call_each([
         configs::<T>,
         places::<T>,
-        tracks::<T, 2, 4, 4>,
         tracks::<T, 2, 5, 9>,
         tracks::<T, 3, 6, 4>,
-        tracks::<T, 3, 7, 9>,
-        listens::<T, 2, 5, 4>,
         listens::<T, 3, 7, 9>,
-        drives::<T, 4>,
         drives::<T, 9>,
-        epochs::<T, 2, 4>,
         epochs::<T, 3, 9>,
-        heights::<T, 4>,
         heights::<T, 5>,
-        published::<T, 2, 4, 4>,
         published::<T, 3, 6, 5>,
     ]);
 }
 
 /// Calls everything in this module.
 pub fn run() {
-    if FLOATS {
+    if LONG_FORM {
         call_each([all_of::<f32>]);
     }
     call_each([all_of::<Q12_20>]);

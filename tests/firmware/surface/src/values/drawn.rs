@@ -7,8 +7,8 @@ use kestirim_scalar::Scalar;
 
 use super::Whole;
 
-/// Whether what takes any numbers is called with `f32`, too: on the host always.
-pub const FLOATS: bool = true;
+/// Whether everything is called with all numbers and sizes: on the host always.
+pub const LONG_FORM: bool = true;
 
 thread_local! {
     static STATE: Cell<u64> = const { Cell::new(1) };

@@ -13,10 +13,10 @@ use rand_core::{Infallible, TryRng};
 
 #[cfg(not(target_os = "none"))]
 pub use drawn::{
-    FLOATS, maybe, number, one_of, rounds, slice, slice_mut, start_from, try_on, whole,
+    LONG_FORM, maybe, number, one_of, rounds, slice, slice_mut, start_from, try_on, whole,
 };
 #[cfg(target_os = "none")]
-pub use opaque::{FLOATS, maybe, number, one_of, rounds, slice, slice_mut, try_on, whole};
+pub use opaque::{LONG_FORM, maybe, number, one_of, rounds, slice, slice_mut, try_on, whole};
 
 /// The value, hidden from the optimiser.
 #[inline(always)]

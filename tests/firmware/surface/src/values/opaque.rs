@@ -7,9 +7,9 @@ use kestirim_scalar::Scalar;
 
 use super::Whole;
 
-/// Whether what takes any numbers is called with `f32`, too: not in the short form, for which fixed point, whose operations
-/// are functions with checks of their own, stands for both.
-pub const FLOATS: bool = option_env!("KESTIRIM_SHORT").is_none();
+/// Whether what takes any numbers is called with `f32`, too, and what has any size with a second one: not in the short form.
+/// Fixed point, whose operations are functions with checks of their own, stands for both there.
+pub const LONG_FORM: bool = option_env!("KESTIRIM_SHORT").is_none();
 
 /// An arbitrary number.
 #[inline(always)]
