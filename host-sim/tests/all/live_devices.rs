@@ -7,7 +7,7 @@ use std::path::Path;
 use host_sim::commands::{self, live::Live};
 use kestirim_health::{Health, Reason};
 use kestirim_telemetry::{EstimateHealth, Imu};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::live_senders::{played, played_with, walk, warns};
 use crate::program::Desk;
@@ -105,13 +105,21 @@ fn each_device_tells_how_far_it_relies_on_its_own_estimate() {
         })
         .collect();
     let report = played(&desk, &in_turn(&lists));
-    for (device, own) in [(7, "good"), (8, "bad: axes")] {
+    for (device, own, reasons) in [(7, "good", json!([])), (8, "bad", json!(["axes"]))] {
         let row = row(&report, device);
+        assert_eq!(row["own_health"], json!({ "state": own, "reasons": reasons }));
         // What is estimated here has a health of its own.
-        assert_eq!((&row["own_health"], &row["health"]["state"]), (&own.into(), &"good".into()));
+        assert_eq!(row["health"]["state"], "good");
     }
     assert!(warns(&report, "device 8 does not rely on its own estimate: bad: axes"), "{report}");
     assert!(!warns(&report, "device 7"), "{report}");
+    // Of a device that is shown in detail, and of one whose reason a later version has.
+    let report = played_with(&desk, &in_turn(&lists), &["--device", "8"]);
+    assert!(warns(&report, "the sender does not rely on its own estimate: bad: axes"), "{report}");
+    let later = EstimateHealth { time_us: 0, reasons: 1 << 15 };
+    let report = played(&desk, &[lists[0].clone(), vec![frame_of(9, 1, later, 0)]].concat());
+    let unknown = json!({ "state": "bad", "reasons": ["unknown"] });
+    assert_eq!(row(&report, 9)["own_health"], unknown);
 }
 
 #[test]

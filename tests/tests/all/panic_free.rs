@@ -1,7 +1,7 @@
 //! No crate can panic: programs that call everything a crate offers (`tests/firmware/surface`) link nothing of the
 //! panic machinery on any target, at either optimisation; nor an allocator, nor double precision where there should be
 //! none. That they call everything is shown by `surface_is_complete.rs`. In the short form (`KESTIRIM_SHORT=1`) what takes
-//! any numbers is called in fixed point alone, on the Cortex-M4F.
+//! any numbers is called in fixed point alone, and what has any size with one, on the Cortex-M4F.
 //!
 //! On a machine without the tools these tests print SKIPPED and pass; with
 //! `KESTIRIM_REQUIRE_TARGETS=1` they fail instead.

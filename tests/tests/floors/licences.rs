@@ -59,7 +59,10 @@ fn everything_may_be_given_away_and_comes_from_the_registry() -> Result<()> {
         "tests/fuzz/Cargo.toml",
     ];
     for manifest in workspaces {
-        let metadata = MetadataCommand::new().manifest_path(super::root().join(manifest)).exec()?;
+        let mut metadata = MetadataCommand::new();
+        // A lock file that lacks something is told, too.
+        metadata.manifest_path(super::root().join(manifest)).other_options(["--locked".to_owned()]);
+        let metadata = metadata.exec()?;
         for package in &metadata.packages {
             let (name, licence) = (&package.name, &package.license);
             let is_allowed = allowed.allows(package).with_context(|| name.to_string())?;

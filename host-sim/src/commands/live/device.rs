@@ -41,14 +41,24 @@ pub struct Row {
     pub path_length_m: Option<f64>,
     /// How far the estimate made here can be relied upon.
     pub health: Option<Health>,
-    /// How far the device relies on its own estimate: the reasons as bits, in JSON in words.
-    #[serde(serialize_with = "words")]
+    /// How far the device relies on its own estimate: the reasons as bits.
+    #[serde(serialize_with = "in_short")]
     pub own_health: Option<u16>,
 }
 
+/// Writes reasons as a [`Health`] is written; those of a later version are *unknown*.
 #[allow(clippy::ref_option, clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
-fn words<S: Serializer>(reasons: &Option<u16>, serializer: S) -> Result<S::Ok, S::Error> {
-    reasons.map(in_words).serialize(serializer)
+fn in_short<S: Serializer>(reasons: &Option<u16>, serializer: S) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Unknown {
+        state: kestirim_health::State,
+        reasons: [&'static str; 1],
+    }
+    match reasons.map(Health::from_bits) {
+        Some(None) => Unknown { state: kestirim_health::State::Bad, reasons: ["unknown"] }
+            .serialize(serializer),
+        known => known.flatten().serialize(serializer),
+    }
 }
 
 impl Row {

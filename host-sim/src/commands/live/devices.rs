@@ -24,14 +24,25 @@ impl State {
         told.chain((self.beyond > 0).then_some(beyond))
     }
 
-    /// Warnings about devices that are not shown in detail and do not rely on their own estimates.
+    /// Warnings about senders that are not shown in detail and do not rely on their own estimates.
     pub(super) fn doubted(&self) -> impl Iterator<Item = String> {
         let others = self.devices.iter().filter(|(number, _)| Some(**number) != self.shown);
-        let doubts = others.filter_map(|(number, row)| Some((number, row.own_health?)));
-        let doubted = doubts.filter(|(_, reasons)| is_bad(*reasons)).take(TOLD_DEVICES);
-        doubted.map(|(number, reasons)| {
-            format!("device {number} does not rely on its own estimate: {}", in_words(reasons))
-        })
+        let named = others.map(|(number, row)| (format!("device {number} does"), row.own_health));
+        let unnamed = self.unnamed.iter();
+        let unnamed =
+            unnamed.map(|row| ("a sender without a number does".to_owned(), row.own_health));
+        let mut doubted: Vec<_> = named
+            .chain(unnamed)
+            .filter_map(|(who, reasons)| Some((who, reasons.filter(|it| is_bad(*it))?)))
+            .map(|(who, reasons)| {
+                format!("{who} not rely on its own estimate: {}", in_words(reasons))
+            })
+            .collect();
+        if let Some(more) = doubted.len().checked_sub(TOLD_DEVICES).filter(|more| *more > 0) {
+            doubted.truncate(TOLD_DEVICES);
+            doubted.push(format!("{more} more senders do not rely on their own estimates"));
+        }
+        doubted.into_iter()
     }
 
     /// The sum of all devices' counters.
@@ -78,8 +89,8 @@ impl State {
             "y, m",
             "z, m",
             "path, m",
-            "health",
-            "its own",
+            "health here",
+            "device's own",
         ];
         let caption = "Each device has an estimator of its own; the setting device says which is shown in detail.";
         let sheet = Sheet::new("live-devices", "Devices", &header).caption(caption);

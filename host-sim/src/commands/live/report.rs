@@ -130,8 +130,8 @@ impl Report {
             "taken in",
             "refused",
             "position",
-            "health",
-            "its own",
+            "health here",
+            "device's own",
         ]);
         for DeviceRow { device, row } in self.devices.iter().take(SHOWN) {
             let position = row.position;

@@ -149,7 +149,8 @@ impl State {
     pub(super) fn restart(&mut self) {
         let path = Path::new(POINTS);
         self.counts.restarts += 1;
-        (self.position, self.place, self.senders_doubts) = (None, None, None);
+        (self.position, self.place) = (None, None);
+        (self.estimate_health, self.senders_doubts) = (None, None);
         self.path = path.clone();
         self.senders_path = path.clone();
         self.footprints = path.clone();

@@ -105,7 +105,7 @@ where
         }
         let doubts = match &epoch.solution {
             Ok(solution) => solution.health.in_short(),
-            // Whatever was sent before is not of now.
+            // No position is sent for this epoch: the last one is out of date.
             Err(_) => Reason::Dropout.into(),
         };
         let health = EstimateHealth { time_us, reasons: doubts.bits() };

@@ -228,8 +228,7 @@ fn orbits<T: Scalar>() {
     keep::<Error>(From::from(any(kestirim_particle_filter::Error::NotFinite)));
 }
 
-/// The sizes are those of the particle filter, which is called with several; here each is compiled in both number
-/// types.
+/// The particle filter, from which the sizes come, is called with several by itself.
 fn all_of<T: Scalar>() {
     if LONG_FORM {
         call_each([locators::<T, 64, 8, 2>]);

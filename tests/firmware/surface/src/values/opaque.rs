@@ -9,7 +9,10 @@ use super::Whole;
 
 /// Whether what takes any numbers is called with `f32`, too, and what has any size with a second one: not in the short form.
 /// Fixed point, whose operations are functions with checks of their own, stands for both there.
-pub const LONG_FORM: bool = option_env!("KESTIRIM_SHORT").is_none();
+pub const LONG_FORM: bool = match option_env!("KESTIRIM_SHORT") {
+    Some(short) => !matches!(short.as_bytes(), b"1"),
+    None => true,
+};
 
 /// An arbitrary number.
 #[inline(always)]
