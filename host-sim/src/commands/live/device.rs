@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use kestirim_health::Health;
 use kestirim_telemetry::{Frame, Order, Origin};
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use super::feed::Feed;
 use super::order::Sorter;
-use super::picture::in_words;
+use super::own_health::OwnHealth;
 use super::state::State;
 use crate::Error;
 use crate::numbers::{Numbers, Place};
@@ -41,24 +41,8 @@ pub struct Row {
     pub path_length_m: Option<f64>,
     /// How far the estimate made here can be relied upon.
     pub health: Option<Health>,
-    /// How far the device relies on its own estimate: the reasons as bits.
-    #[serde(serialize_with = "in_short")]
-    pub own_health: Option<u16>,
-}
-
-/// Writes reasons as a [`Health`] is written; those of a later version are *unknown*.
-#[allow(clippy::ref_option, clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
-fn in_short<S: Serializer>(reasons: &Option<u16>, serializer: S) -> Result<S::Ok, S::Error> {
-    #[derive(Serialize)]
-    struct Unknown {
-        state: kestirim_health::State,
-        reasons: [&'static str; 1],
-    }
-    match reasons.map(Health::from_bits) {
-        Some(None) => Unknown { state: kestirim_health::State::Bad, reasons: ["unknown"] }
-            .serialize(serializer),
-        known => known.flatten().serialize(serializer),
-    }
+    /// How far the device relies on its own estimate.
+    pub own_health: Option<OwnHealth>,
 }
 
 impl Row {
@@ -67,7 +51,7 @@ impl Row {
         let unknown = || "–".to_owned();
         [
             self.health.map_or_else(unknown, |health| health.to_string()),
-            self.own_health.map_or_else(unknown, in_words),
+            self.own_health.map_or_else(unknown, |health| health.to_string()),
         ]
     }
 }
@@ -183,7 +167,7 @@ impl Device {
             position: state.position,
             path_length_m: state.path_length_m,
             health: state.estimate_health,
-            own_health: state.senders_doubts,
+            own_health: state.own_health,
             ..self.row
         }
     }

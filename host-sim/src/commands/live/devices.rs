@@ -1,7 +1,6 @@
 //! All devices of a line together.
 
 use super::device::Row;
-use super::picture::{in_words, is_bad};
 use super::report::Counts;
 use super::state::State;
 use crate::numbers::TOLD;
@@ -33,10 +32,8 @@ impl State {
             unnamed.map(|row| ("a sender without a number does".to_owned(), row.own_health));
         let mut doubted: Vec<_> = named
             .chain(unnamed)
-            .filter_map(|(who, reasons)| Some((who, reasons.filter(|it| is_bad(*it))?)))
-            .map(|(who, reasons)| {
-                format!("{who} not rely on its own estimate: {}", in_words(reasons))
-            })
+            .filter_map(|(who, health)| Some((who, health.filter(|it| it.is_bad())?)))
+            .map(|(who, health)| format!("{who} not rely on its own estimate: {health}"))
             .collect();
         if let Some(more) = doubted.len().checked_sub(TOLD_DEVICES).filter(|more| *more > 0) {
             doubted.truncate(TOLD_DEVICES);

@@ -14,18 +14,6 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// The colour of the sender's own estimate.
 const SENDERS: Colour = Colour::Other(3);
 
-/// Whether a sender's estimate may be wrong by far more than it says; so may one with a reason of a later version.
-pub(super) fn is_bad(reasons: u16) -> bool {
-    let health = kestirim_health::Health::from_bits(reasons);
-    health.is_none_or(|health| health.state() == kestirim_health::State::Bad)
-}
-
-/// The health of a sender's estimate in words.
-pub(super) fn in_words(reasons: u16) -> String {
-    let unknown = || "a reason that this version does not know".to_owned();
-    kestirim_health::Health::from_bits(reasons).map_or_else(unknown, |health| health.to_string())
-}
-
 impl State {
     /// Results by name, with their units.
     pub(super) fn all_facts(&self) -> Vec<(String, String)> {
@@ -56,8 +44,8 @@ impl State {
             let health = format!("{accepted} taken in, {rejected} refused, {failed} failed");
             facts.push(("the sender's own account", health));
         }
-        if let Some(reasons) = self.senders_doubts {
-            facts.push(("the sender's own estimate", in_words(reasons)));
+        if let Some(health) = self.own_health {
+            facts.push(("the sender's own estimate", health.to_string()));
         }
         let named = facts.into_iter().map(|(name, value)| (name.to_owned(), value));
         named.chain(self.facts.iter().cloned()).collect()

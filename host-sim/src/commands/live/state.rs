@@ -13,7 +13,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::device::Row;
 use super::options::Following;
-use super::picture::{in_words, is_bad};
+use super::own_health::OwnHealth;
 use super::report::{Counts, DeviceRow, Report};
 use super::thinned::Thinned;
 use super::window::Window;
@@ -49,8 +49,8 @@ pub(super) struct State {
     /// The latest time of the sender's clock, in microseconds.
     pub(super) time_us: Option<u64>,
     pub(super) health: Option<Health>,
-    /// The reasons why the sender doubts its estimate, as bits.
-    pub(super) senders_doubts: Option<u16>,
+    /// How far the sender relies on its own estimate.
+    pub(super) own_health: Option<OwnHealth>,
     /// The position estimate (m).
     pub(super) position: Option<[f64; 3]>,
     /// The position estimate on the map (m).
@@ -105,7 +105,7 @@ impl State {
             ignored: Arc::default(),
             time_us: None,
             health: None,
-            senders_doubts: None,
+            own_health: None,
             position: None,
             place: None,
             path_length_m: None,
@@ -150,7 +150,7 @@ impl State {
         let path = Path::new(POINTS);
         self.counts.restarts += 1;
         (self.position, self.place) = (None, None);
-        (self.estimate_health, self.senders_doubts) = (None, None);
+        (self.estimate_health, self.own_health) = (None, None);
         self.path = path.clone();
         self.senders_path = path.clone();
         self.footprints = path.clone();
@@ -229,7 +229,7 @@ impl State {
     /// Adds a message about the sender itself.
     pub(super) fn tell(&mut self, message: &Message) {
         if let Message::EstimateHealth(EstimateHealth { reasons, .. }) = *message {
-            self.senders_doubts = Some(reasons);
+            self.own_health = Some(OwnHealth::from_bits(reasons));
         }
         if self.is_brief {
             return;
@@ -289,10 +289,9 @@ impl State {
         let ignored = (ignored > 0).then(|| {
             format!("{ignored} datagrams of a second sender were ignored: a port is for one sender (--udp)")
         });
-        let doubts = self.senders_doubts.filter(|reasons| is_bad(*reasons));
-        let doubts = doubts.map(|reasons| {
-            format!("the sender does not rely on its own estimate: {}", in_words(reasons))
-        });
+        let doubts = self.own_health.filter(|health| health.is_bad());
+        let doubts =
+            doubts.map(|health| format!("the sender does not rely on its own estimate: {health}"));
         let told = [anew, left_out, ignored, doubts]
             .into_iter()
             .flatten()
