@@ -80,8 +80,11 @@ impl Page {
         let begun = Instant::now();
         // Evaluation fails while one page is replaced by the next.
         while !self.try_evaluate(script).is_ok_and(|said| said["result"]["value"] == true) {
-            let complaints = self.complaints();
-            assert!(begun.elapsed() < PATIENCE, "{script} never came true: {complaints:?}");
+            assert!(
+                begun.elapsed() < PATIENCE,
+                "{script} never came true: {:?}",
+                self.complaints()
+            );
             std::thread::sleep(Duration::from_millis(20));
         }
     }
@@ -155,14 +158,18 @@ impl Page {
         })
     }
 
+    /// Makes the page as high as its contents, so that every figure comes into view and is drawn.
+    pub(crate) fn unfold(&self) {
+        let height = self.evaluate("document.documentElement.scrollHeight").as_f64();
+        self.size(height.map_or(900, |height| height as u32));
+        std::thread::sleep(Duration::from_millis(500));
+    }
+
     /// Saves a screenshot of the whole page.
     pub(crate) fn screenshot(&self, name: &str) -> PathBuf {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("screenshots");
         fs::create_dir_all(&folder).expect("a folder for screenshots");
-        let height = self.evaluate("document.documentElement.scrollHeight").as_f64();
-        self.size(height.map_or(900, |height| height as u32));
-        // Figures that have come into view are drawn now.
-        std::thread::sleep(Duration::from_millis(500));
+        self.unfold();
         let image = self.call("Page.captureScreenshot", &json!({ "format": "png" }));
         let image = STANDARD.decode(image["data"].as_str().expect("an image")).expect("base64");
         let path = folder.join(name);

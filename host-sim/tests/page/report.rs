@@ -13,15 +13,13 @@ fn the_report_opens_from_the_disk() {
     let address = format!("file://{folder}/index.html");
     for width in WIDTHS {
         let Some(page) = Page::open(&address, width) else { return };
-        // On a page as high as its contents every figure comes into view.
-        let picture = format!("report-robot-{width}.png");
         page.screenshot(&format!("report-robot-closed-{width}.png"));
         page.evaluate("document.querySelectorAll('details').forEach(d => { d.open = true; })");
-        page.screenshot(&picture);
+        page.unfold();
         page.wait_for(
             "[...document.querySelectorAll('[data-figure]')].every(f => f.querySelector('.main-svg'))",
         );
-        page.screenshot(&picture);
+        page.screenshot(&format!("report-robot-{width}.png"));
         let theme = "document.documentElement.dataset.theme";
         let before = page.evaluate(theme);
         page.evaluate("document.getElementById('theme').click()");
