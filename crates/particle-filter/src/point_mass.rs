@@ -82,6 +82,12 @@ impl<T: Scalar, const D: usize, const N: usize> PointMass<T, D, N> {
         self.weights.heaviest()
     }
 
+    /// The sum of the weights Σw, the largest of which is one.
+    #[inline]
+    pub fn sum(&self) -> T {
+        self.weights.sum()
+    }
+
     /// Effective number of points (Σw)²/Σw².
     #[inline]
     pub fn effective(&self) -> T {

@@ -124,8 +124,7 @@ impl Hypothesis<'_> {
         let part = volume / posterior.len() as f64;
         let Some(state) = posterior.point(posterior.heaviest()) else { return };
         let heaviest = self.locator.log_posterior(&state);
-        let beside = log_sum(posterior.log_weights().iter().copied());
-        self.evidence = heaviest + beside + part.ln();
+        self.evidence = heaviest + (posterior.sum() * part).ln();
     }
 }
 
@@ -175,13 +174,13 @@ impl<'h, 'a> Believed<'h, 'a> {
         let mut places = Vec::new();
         for (hypothesis, share) in &counting {
             let posterior = hypothesis.locator.posterior();
-            let all = log_sum(posterior.log_weights().iter().copied());
+            let all = posterior.sum();
             let states = (0..posterior.len())
                 .filter_map(|index| posterior.point(index).zip(posterior.log_weights().get(index)));
             let heavy = states.filter(|(_, log_weight)| **log_weight > LIGHT);
             // All hypotheses together contribute as many points as a single one would.
             let some = heavy.step_by(counting.len());
-            places.extend(some.map(|([x, y, _], log)| ([x, y], *share * (log - all).exp())));
+            places.extend(some.map(|([x, y, _], log)| ([x, y], *share * log.exp() / all)));
         }
         let mut points: Vec<(f64, f64)> =
             places.par_iter().map(|(place, weight)| (density(*place), *weight)).collect();

@@ -136,6 +136,7 @@ fn points<T: Scalar, const D: usize, const N: usize>() {
     keep(PointMass::point(&mass, whole()));
     keep(PointMass::log_weights(&mass));
     keep(PointMass::heaviest(&mass));
+    keep(PointMass::sum(&mass));
     keep(PointMass::effective(&mass));
     keep(PointMass::finer(&mass, number()));
     moments(&any(PointMass::moments(&mass)));
