@@ -6,6 +6,8 @@ use super::sight::decibels;
 const SPACING: i32 = -1;
 /// The exponent of the entries' unit.
 const UNIT: i32 = -24;
+/// Index of the last entry but one.
+const LAST: i32 = 17;
 /// ln(1 + e⁻ᵃ), and minus its derivative 1/(1 + eᵃ), for a = 0, ½, …, 9.
 const ENTRIES: [[i32; 2]; 19] = [
     [11_629_080, 8_388_608],
@@ -34,6 +36,7 @@ const ENTRIES: [[i32; 2]; 19] = [
 ///
 /// A fit does this for each measurement, step and place: a polynomial between two entries of a table costs a fraction
 /// of an exponential and a logarithm.
+#[inline(always)]
 pub(super) fn added<T: Scalar>(floor: T, signal: T) -> (T, T) {
     let is_stronger = signal > floor;
     let stronger = if is_stronger { signal } else { floor };
@@ -44,11 +47,14 @@ pub(super) fn added<T: Scalar>(floor: T, signal: T) -> (T, T) {
 
 /// ln(1 + e⁻ᵃ) and 1/(1 + eᵃ) for a ≥ 0: the cubic polynomial that has value and slope of both entries beside a
 /// (Hermite's interpolation), and its derivative.
+#[inline(always)]
 fn between<T: Scalar>(a: T) -> (T, T) {
     // Half a spacing less, so that the nearest entry is the one below.
-    let index = (a - T::from_binary(1, SPACING - 1)).to_binary(SPACING).max(0);
-    let below = ENTRIES.get(index as usize..).unwrap_or_default();
-    let &[[low, falls], [high, falls_then], ..] = below else { return (T::ZERO, T::ZERO) };
+    let nearest = (a - T::from_binary(1, SPACING - 1)).to_binary(SPACING).max(0);
+    let is_far = nearest > LAST;
+    let index = if is_far { LAST } else { nearest };
+    let [low, falls] = entry(index);
+    let [high, falls_then] = entry(index + 1);
     let t = a * T::from_binary(1, -SPACING) - T::from_binary(index, 0);
     let number = |entry| T::from_binary(entry, UNIT);
     let slope = |entry| -T::from_binary(entry, UNIT + SPACING);
@@ -57,7 +63,14 @@ fn between<T: Scalar>(a: T) -> (T, T) {
     let second = change + change + change - first - first - last;
     let third = first + last - change - change;
     let derivative = first + t * (second + second + t * (third + third + third));
-    (value + t * (first + t * (second + t * third)), -derivative * T::from_binary(1, -SPACING))
+    let value = value + t * (first + t * (second + t * third));
+    let derivative = derivative * T::from_binary(1, -SPACING);
+    if is_far { (T::ZERO, T::ZERO) } else { (value, -derivative) }
+}
+
+#[inline(always)]
+fn entry(index: i32) -> [i32; 2] {
+    ENTRIES.get(index as usize).copied().unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -1,13 +1,12 @@
+use kestirim_arithmetic::vectors::{Kernel, Vectors};
 use kestirim_scalar::Scalar;
 
 use super::Supposition;
-use super::added::added;
+use super::abreast::{Abreast, FREEDOM, WAVERING_DB};
+use super::lanes::Lanes;
+use super::normal::Normal;
 use super::sight::{PATTERN_DB, Row, Sight, decibels, mean_square, used};
 
-/// Degrees of freedom of Student's t-distribution, whose tails represent antenna nulls and buildings.
-const FREEDOM: f64 = 4.0;
-/// Scale of the fluctuations of a receiver's floor and of its readings, dB.
-const WAVERING_DB: f64 = 1.7;
 /// Number of steps of the fit, after which a further one changes no level by a tenth of a decibel.
 const STEPS: usize = 5;
 /// Largest change of the level in a step, dB.
@@ -44,7 +43,8 @@ impl<T: Scalar> GroundFit<T> {
     ) -> (T, T) {
         let distance = T::norm(&[from[0] - place[0], from[1] - place[1], height]).max(T::EPSILON);
         let signal = self.level - self.exponent * decibels(distance.ln());
-        let (level, share) = supposition.received(signal);
+        let [level, share] = Abreast::new(&[*supposition]).received(Lanes([signal]));
+        let ([level], [share]) = (level.0, share.0);
         let pattern = T::from_f64(PATTERN_DB) * mean_square::<T>(supposition.pattern).sqrt();
         // The variance of Student's distribution is that of its scale, times ν / (ν − 2).
         let scale = supposition.scale * T::from_f64(FREEDOM / (FREEDOM - 2.0)).sqrt();
@@ -52,67 +52,102 @@ impl<T: Scalar> GroundFit<T> {
     }
 }
 
-impl<T: Scalar> Supposition<T> {
-    /// The level that a receiver shows for a signal, and its derivative with respect to the signal: from zero in the
-    /// floor to one above it.
-    fn received(&self, signal: T) -> (T, T) {
-        let (level, share) = match self.floor {
-            Some(floor) => added(floor, signal),
-            None => (signal, T::ONE),
-        };
-        match self.ceiling {
-            Some(ceiling) if level > ceiling => (ceiling, T::ZERO),
-            _ => (level, share),
-        }
-    }
-}
+/// Number of suppositions that are fitted side by side: one in each lane of a processor's vectors, if it has some.
+const LANES: usize = if cfg!(feature = "vectors") { 4 } else { 1 };
 
-/// The normal equations of a step.
-struct Normal<T, const P: usize> {
-    matrix: [[T; P]; P],
-    vector: [T; P],
-    used: usize,
-}
-
-pub(super) fn fit<T: Scalar, const P: usize>(
+/// The fit of the measurements under a supposition.
+pub(super) fn one<T: Scalar, const P: usize>(
     sight: &Sight<T, P>,
     supposition: &Supposition<T>,
     power: T,
 ) -> GroundFit<T> {
-    let used = used(supposition.pattern);
-    let mut parameters = [T::ZERO; P];
-    parameters[0] = start(sight, supposition) / sight.level[1];
-    let mut log_evidence = T::ZERO;
-    for step in 0..=STEPS {
-        let is_last = step == STEPS;
-        let mut normal = Normal::new(used, &parameters);
-        let mut log_likelihood = T::ZERO;
-        for row in sight.rows() {
-            let seen = Seen::new(row, &parameters, used, supposition);
-            if is_last {
-                log_likelihood += seen.log_density();
-            }
-            normal.add(row, &seen, power);
-        }
-        let log_determinant = normal.decompose();
-        if is_last {
-            let mut squares = T::ZERO;
-            for parameter in parameters.iter().take(used) {
-                squares += *parameter * *parameter;
-            }
-            log_evidence = power * log_likelihood - squares * T::HALF - log_determinant;
+    let [fit] = Fit { sight, suppositions: &[*supposition], power }.run();
+    fit
+}
+
+/// Passes the fits under all suppositions of some patterns to `told`, with their index.
+pub(super) fn each<T: Scalar, const P: usize>(
+    sight: &Sight<T, P>,
+    suppositions: &[Supposition<T>],
+    is_asked: impl Fn(&Supposition<T>) -> bool,
+    power: T,
+    told: &mut impl FnMut(usize, &Supposition<T>, GroundFit<T>),
+) {
+    let mut index = 0;
+    while let Some(first) = suppositions.get(index) {
+        let group = suppositions.iter().skip(index).take(LANES);
+        let group = group.take_while(|it| it.pattern == first.pattern);
+        let count = group.clone().count();
+        if !is_asked(first) {
+            // Of another kind, whose sight has other parameters.
+        } else if LANES == 1 || count == 1 {
+            told(index, first, one(sight, first, power));
         } else {
+            let mut abreast = [*first; LANES];
+            for (lane, supposition) in abreast.iter_mut().zip(group.clone()) {
+                *lane = *supposition;
+            }
+            let fits = Vectors::widest().run(Fit { sight, suppositions: &abreast, power });
+            for ((index, supposition), fit) in (index..).zip(group).zip(fits) {
+                told(index, supposition, fit);
+            }
+        }
+        index += count;
+    }
+}
+
+/// The fits of the measurements under suppositions of one pattern. They are computed side by side, so that a processor
+/// with vectors does the same step of several at a time.
+struct Fit<'a, T, const P: usize, const W: usize> {
+    sight: &'a Sight<T, P>,
+    suppositions: &'a [Supposition<T>; W],
+    power: T,
+}
+
+impl<T: Scalar, const P: usize, const W: usize> Kernel for Fit<'_, T, P, W> {
+    type Output = [GroundFit<T>; W];
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Self { sight, suppositions, power } = self;
+        let used = suppositions.first().map_or(0, |it| used(it.pattern));
+        let abreast = Abreast::new(suppositions);
+        let mut parameters = [Lanes::all(T::ZERO); P];
+        parameters[0] = Lanes(suppositions.each_ref().map(|it| start(sight, it) / sight.level[1]));
+        for _ in 0..STEPS {
+            let mut normal = Normal::new(used, &parameters);
+            for row in sight.rows() {
+                normal.add(row, &abreast.seen(row, &parameters, used, power));
+            }
+            normal.decompose();
             let change = normal.solve();
-            let far = change[0].abs() * sight.level[1];
             let longest = T::from_f64(LONGEST_DB);
-            let share = if far > longest { longest / far } else { T::ONE };
+            let share = change[0].map(|level| {
+                let far = level.abs() * sight.level[1];
+                if far > longest { longest / far } else { T::ONE }
+            });
             for (parameter, change) in parameters.iter_mut().zip(change) {
                 *parameter += share * change;
             }
         }
+        let mut normal = Normal::new(used, &parameters);
+        let mut log_likelihood = Lanes::all(T::ZERO);
+        let mut squares = Lanes::all(T::ZERO);
+        for row in sight.rows() {
+            let seen = abreast.seen(row, &parameters, used, power);
+            log_likelihood += seen.log_density();
+            normal.add(row, &seen);
+        }
+        for parameter in parameters.iter().take(used) {
+            squares += *parameter * *parameter;
+        }
+        normal.decompose();
+        let log_evidence = log_likelihood * power - squares * T::HALF - normal.log_determinant();
+        core::array::from_fn(|lane| {
+            let [level, exponent] = sight.named(&parameters.map(|parameter| parameter.0[lane]));
+            GroundFit { log_evidence: log_evidence.0[lane], level, exponent }
+        })
     }
-    let [level, exponent] = sight.named(&parameters);
-    GroundFit { log_evidence, level, exponent }
 }
 
 /// The mean excess of the signals over what is expected, dB.
@@ -130,123 +165,4 @@ fn start<T: Scalar, const P: usize>(sight: &Sight<T, P>, supposition: &Suppositi
     };
     let (of_signals, count) = mean(true);
     if count < FEWEST { mean(false).0 } else { of_signals }
-}
-
-/// The residual of a measurement and its noise.
-struct Seen<T: Scalar> {
-    /// The residual, dB.
-    error: T,
-    /// Derivative of the level with respect to the signal: from zero in the floor to one above it.
-    share: T,
-    /// Square of the noise scale, dB².
-    variance: T,
-    /// The same, prepared for division.
-    divisor: T::Divisor,
-    /// Square of the residual in units of the variance.
-    square: T,
-}
-
-impl<T: Scalar> Seen<T> {
-    fn new<const P: usize>(
-        row: &Row<T, P>,
-        parameters: &[T; P],
-        used: usize,
-        supposition: &Supposition<T>,
-    ) -> Self {
-        let mut signal = row.expected;
-        for (slope, parameter) in row.slopes.iter().zip(parameters).take(used) {
-            signal += *slope * *parameter;
-        }
-        let (level, share) = supposition.received(signal);
-        let scale = share * supposition.scale;
-        let variance = scale * scale + T::from_f64(WAVERING_DB * WAVERING_DB);
-        let error = (row.level - level).clamp(-T::from_f64(150.0), T::from_f64(150.0));
-        let divisor = variance.divisor();
-        Self { error, share, variance, divisor, square: error.divided_by(divisor) * error }
-    }
-
-    /// The log-density up to a constant.
-    fn log_density(&self) -> T {
-        let freedom = T::from_f64(FREEDOM);
-        let tail = (T::ONE + self.square / freedom).ln() * (freedom + T::ONE);
-        -(self.variance.ln() + tail) * T::HALF
-    }
-}
-
-impl<T: Scalar, const P: usize> Normal<T, P> {
-    /// The equations of the prior alone: all parameters are 0 ± 1.
-    fn new(used: usize, parameters: &[T; P]) -> Self {
-        let vector = parameters.map(|parameter| -parameter);
-        let mut matrix = [[T::ZERO; P]; P];
-        for (index, row) in matrix.iter_mut().enumerate() {
-            row[index] = T::ONE;
-        }
-        Self { matrix, vector, used }
-    }
-
-    fn add(&mut self, row: &Row<T, P>, seen: &Seen<T>, power: T) {
-        let freedom = T::from_f64(FREEDOM);
-        let weight = power * (freedom + T::ONE) / (freedom + seen.square);
-        let weight = weight.divided_by(seen.divisor);
-        let (slope, error) = (weight * seen.share, seen.error);
-        let used = self.used;
-        for (index, line) in self.matrix.iter_mut().enumerate().take(used) {
-            let factor = slope * row.slopes[index];
-            self.vector[index] += factor * error;
-            let factor = factor * seen.share;
-            for (entry, other) in line.iter_mut().zip(&row.slopes).take(index + 1) {
-                *entry += factor * *other;
-            }
-        }
-    }
-
-    /// Replaces the matrix with its Cholesky factor; returns half the logarithm of its determinant.
-    fn decompose(&mut self) -> T {
-        let mut log_determinant = T::ZERO;
-        // Constant bounds, so that the compiler can prove the indices valid.
-        for row in 0..P {
-            if row >= self.used {
-                break;
-            }
-            for column in 0..=row {
-                let mut sum = self.matrix[row][column];
-                for index in 0..column {
-                    sum -= self.matrix[row][index] * self.matrix[column][index];
-                }
-                self.matrix[row][column] = if row == column {
-                    // The prior alone makes it at least one.
-                    let root = sum.max(T::HALF).sqrt();
-                    log_determinant += root.ln();
-                    root
-                } else {
-                    sum / self.matrix[column][column]
-                };
-            }
-        }
-        log_determinant
-    }
-
-    /// Solves for the change of the parameters with the Cholesky factor.
-    fn solve(&self) -> [T; P] {
-        let mut change = self.vector;
-        for row in 0..P {
-            if row >= self.used {
-                break;
-            }
-            let mut sum = change[row];
-            for index in 0..row {
-                sum -= self.matrix[row][index] * change[index];
-            }
-            change[row] = sum / self.matrix[row][row];
-        }
-        for row in (0..P).rev() {
-            // Entries beyond the used ones are zero, and have no effect.
-            let mut sum = change[row];
-            for index in row + 1..P {
-                sum -= self.matrix[index][row] * change[index];
-            }
-            change[row] = sum / self.matrix[row][row];
-        }
-        change
-    }
 }

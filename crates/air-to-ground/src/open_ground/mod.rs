@@ -1,7 +1,10 @@
 //! Received levels from a transmitter of which little is known.
 
+mod abreast;
 mod added;
 mod fit;
+mod lanes;
+mod normal;
 mod sight;
 
 use kestirim_scalar::Scalar;
@@ -160,10 +163,10 @@ impl<T: Scalar> OpenGround<T> {
     ) -> GroundFit<T> {
         if supposition.pattern == Pattern::Turned {
             let sight = Sight::<T, TURNED>::new(self.level, measurements, headings, place);
-            fit::fit(&sight, supposition, power)
+            fit::one(&sight, supposition, power)
         } else {
             let sight = Sight::<T, PARAMETERS>::new(self.level, measurements, headings, place);
-            fit::fit(&sight, supposition, power)
+            fit::one(&sight, supposition, power)
         }
     }
 
@@ -178,10 +181,6 @@ impl<T: Scalar> OpenGround<T> {
         suppositions: &[Supposition<T>],
         mut told: impl FnMut(usize, T),
     ) -> T {
-        let of_kind = |is_turned: bool| {
-            let numbered = suppositions.iter().enumerate();
-            numbered.filter(move |(_, it)| (it.pattern == Pattern::Turned) == is_turned)
-        };
         let mut all = T::ZERO.ln();
         let mut add = |index: usize, supposition: &Supposition<T>, fit: GroundFit<T>| {
             let log = fit.log_evidence + supposition.log_prior;
@@ -190,18 +189,15 @@ impl<T: Scalar> OpenGround<T> {
             let (more, less) = if log > all { (log, all) } else { (all, log) };
             all = if less.is_finite() { more + (T::ONE + (less - more).exp()).ln() } else { more };
         };
+        let turned = |it: &Supposition<T>| it.pattern == Pattern::Turned;
         // One after the other, so that both can use the same memory.
-        if of_kind(false).next().is_some() {
+        if !suppositions.iter().all(turned) {
             let sight = Sight::<T, PARAMETERS>::new(self.level, measurements, headings, place);
-            for (index, supposition) in of_kind(false) {
-                add(index, supposition, fit::fit(&sight, supposition, power));
-            }
+            fit::each(&sight, suppositions, |it| !turned(it), power, &mut add);
         }
-        if of_kind(true).next().is_some() {
+        if suppositions.iter().any(turned) {
             let sight = Sight::<T, TURNED>::new(self.level, measurements, headings, place);
-            for (index, supposition) in of_kind(true) {
-                add(index, supposition, fit::fit(&sight, supposition, power));
-            }
+            fit::each(&sight, suppositions, turned, power, &mut add);
         }
         all
     }

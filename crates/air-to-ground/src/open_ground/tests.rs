@@ -200,3 +200,33 @@ fn an_antenna_that_turns_with_the_drone_is_likelier_where_headings_are_known() {
     check_turned::<f64>();
     check_turned::<Q16_16>();
 }
+
+/// Feature `vectors` fits several suppositions side by side, which gives what one after the other does.
+#[test]
+fn fits_side_by_side_are_those_of_one_at_a_time() {
+    let flight = flight::<f64>(2.0, |level| level.clamp(-62.0, -48.0));
+    let headings: Vec<_> =
+        (0..100).map(|k| Heading::new(f64::from(k) * 0.7).expect("finite")).collect();
+    let channel = OpenGround::new(None);
+    let mut all = suppositions(&channel, &flight, &headings);
+    assert_eq!(all.len(), SUPPOSITIONS);
+    for supposition in &mut all {
+        supposition.ceiling = Some(-52.0);
+    }
+    // As after the unlikely ones have been left out: one, two and more of a pattern.
+    for _ in 0..3 {
+        let mut count = 0;
+        channel.log_likelihood(&flight, &headings, [70.0, 5.0], 0.5, &all, |index, log| {
+            let fit = channel.fit(&flight, &headings, [70.0, 5.0], &all[index], 0.5);
+            assert_eq!(log, fit.log_evidence + all[index].log_prior, "{:?}", all[index]);
+            assert_eq!(index, count, "in their order");
+            count += 1;
+        });
+        assert_eq!(count, all.len());
+        let mut number = 0;
+        all.retain(|_| {
+            number += 1;
+            number % 5 == 1 || number % 7 == 2
+        });
+    }
+}
