@@ -1,6 +1,8 @@
 //! Tests that a setting is declared once: the command line, the page and a live stream have the same ones, each has an
 //! effect or a reason for none, and the settings can be reproduced as a command and as firmware.
 
+mod program;
+
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fmt::Write;
@@ -47,7 +49,7 @@ fn open(system: &dyn AnySystem, name: &str) -> Box<dyn Opened> {
 /// The synthetic recordings whose every setting is tried: all, and in the short form (`KESTIRIM_SHORT=1`) the first.
 fn tried(system: &dyn AnySystem) -> &'static [(&'static str, &'static str)] {
     let all = system.synthetic();
-    if std::env::var("KESTIRIM_SHORT").is_ok_and(|it| it == "1") { &all[..1] } else { all }
+    if program::is_short() { &all[..1] } else { all }
 }
 
 fn with(opened: &dyn Opened, given: &[(&'static str, SettingValue)]) -> Settings {

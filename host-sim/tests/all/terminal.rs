@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::program::text;
+use crate::program::{is_short, text};
 
 /// The width of the widest row of a table that a command prints, in columns; `None` if it prints no table.
 fn widest_row(arguments: &[&str], columns: Option<u16>) -> Option<usize> {
@@ -20,10 +20,9 @@ fn widest_row(arguments: &[&str], columns: Option<u16>) -> Option<usize> {
 
 #[test]
 fn tables_of_every_system_fit_into_60_and_80_columns() {
-    let is_short = std::env::var("KESTIRIM_SHORT").is_ok_and(|it| it == "1");
     for system in ["pedestrian", "robot", "drone", "gnss", "uav"] {
         let run = ["run", system, "--trials", "2"];
-        let all = if is_short { &[60][..] } else { &[60, 80] };
+        let all = if is_short() { &[60][..] } else { &[60, 80] };
         for &columns in all {
             let widest = widest_row(&run, Some(columns)).expect("a table");
             assert!(widest <= usize::from(columns), "{system}: {widest} in {columns} columns");

@@ -39,11 +39,7 @@ const SYSTEMS: [&str; 5] = ["pedestrian", "robot", "drone", "uav", "gnss"];
 /// The systems whose pages are tested completely: all, and in the short form (`KESTIRIM_SHORT=1`) one with a map and
 /// one with figures over time, as the pages share their code.
 fn systems() -> &'static [&'static str] {
-    if std::env::var("KESTIRIM_SHORT").is_ok_and(|it| it == "1") {
-        &["robot", "uav"]
-    } else {
-        &SYSTEMS
-    }
+    if program::is_short() { &["robot", "uav"] } else { &SYSTEMS }
 }
 
 /// A script that chooses an option or moves a slider as a user does.

@@ -15,6 +15,11 @@ pub(crate) fn host_sim<S: AsRef<std::ffi::OsStr>>(arguments: &[S]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_host-sim")).args(arguments).output().expect("the program runs")
 }
 
+/// Whether only the short form of the tests is asked for (`KESTIRIM_SHORT=1`).
+pub(crate) fn is_short() -> bool {
+    std::env::var("KESTIRIM_SHORT").is_ok_and(|it| it == "1")
+}
+
 /// Whether a program is missing, which is reported; fails if the environment variable `required` is set.
 pub(crate) fn is_missing(program: &str, required: &str) -> bool {
     let is_missing = Command::new(program).arg("--version").output().is_err();
