@@ -7,7 +7,7 @@ const SPACING: i32 = -1;
 /// The exponent of the entries' unit.
 const UNIT: i32 = -24;
 /// Index of the last entry but one.
-const LAST: i32 = 17;
+const LAST: i32 = ENTRIES.len() as i32 - 2;
 /// ln(1 + e⁻ᵃ), and minus its derivative 1/(1 + eᵃ), for a = 0, ½, …, 9.
 const ENTRIES: [[i32; 2]; 19] = [
     [11_629_080, 8_388_608],

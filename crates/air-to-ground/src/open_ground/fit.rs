@@ -43,8 +43,8 @@ impl<T: Scalar> GroundFit<T> {
     ) -> (T, T) {
         let distance = T::norm(&[from[0] - place[0], from[1] - place[1], height]).max(T::EPSILON);
         let signal = self.level - self.exponent * decibels(distance.ln());
-        let [level, share] = Abreast::new(&[*supposition]).received(Lanes([signal]));
-        let ([level], [share]) = (level.0, share.0);
+        let [Lanes([level]), Lanes([share])] =
+            Abreast::new(&[*supposition]).received(Lanes([signal]));
         let pattern = T::from_f64(PATTERN_DB) * mean_square::<T>(supposition.pattern).sqrt();
         // The variance of Student's distribution is that of its scale, times ν / (ν − 2).
         let scale = supposition.scale * T::from_f64(FREEDOM / (FREEDOM - 2.0)).sqrt();
