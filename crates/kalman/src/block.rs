@@ -35,7 +35,7 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         noise: &Covariance<T, M>,
     ) -> Result<BlockInnovation<T, M>, Error> {
         // In fixed point a difference may leave the rail.
-        if !(T::SPREADS || T::all_finite(innovation.as_array())) {
+        if !(T::IS_FLOAT || T::all_finite(innovation.as_array())) {
             return Err(Error::NotFinite);
         }
         let covariance = self.expected_spread(rows, noise);
@@ -114,7 +114,7 @@ fn decorrelated<T: Scalar, const M: usize, const N: usize>(
         }
     }
     // NaN passes every comparison above, and fixed point may have reached a rail.
-    let are_finite = T::SPREADS
+    let are_finite = T::IS_FLOAT
         || T::all_finite(innovation.as_array()) && T::all_finite(rows.as_columns().as_flattened());
     if T::all_finite(&variances) && are_finite {
         Ok((rows, innovation, variances))

@@ -254,7 +254,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     /// P ← P − k·gᵀ for the gain k = g/S and g = P hᵀ; in fixed point the variances become `left`.
     #[inline(always)]
     pub(crate) fn downdate(&mut self, gain: &[T; N], g: &[T; N], left: &[T; N]) {
-        if !T::SPREADS {
+        if !T::IS_FLOAT {
             return self.downdate_fixed(N, gain, g, left);
         }
         self.absorb_rounding();
@@ -273,7 +273,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
     /// P ← P − k·gᵀ as in [`Covariance::downdate`], for all entries but row and column `i`.
     #[inline(always)]
     pub(crate) fn downdate_beside(&mut self, i: usize, gain: &[T; N], g: &[T; N], left: &[T; N]) {
-        if !T::SPREADS {
+        if !T::IS_FLOAT {
             return self.downdate_fixed(i, gain, g, left);
         }
         self.absorb_rounding();
@@ -352,7 +352,7 @@ impl<T: Scalar, const N: usize> Covariance<T, N> {
         g: &[T; N],
         left: &mut [T; N],
     ) -> Result<(), Error> {
-        if T::SPREADS {
+        if T::IS_FLOAT {
             return Ok(());
         }
         if !T::all_finite(gain) {

@@ -40,7 +40,7 @@ impl<T: Scalar> Weights<T> {
     /// is caught.
     #[inline(always)]
     pub(crate) fn for_update(innovation: T, spread: T, noise: T) -> Result<Self, Error> {
-        if !(T::SPREADS || innovation.is_finite()) {
+        if !(T::IS_FLOAT || innovation.is_finite()) {
             return Err(Error::NotFinite);
         }
         // Rounding can leave h P hᵀ slightly below zero.

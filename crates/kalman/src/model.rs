@@ -72,7 +72,7 @@ impl<T: Scalar, const N: usize, const K: usize> Observation<T, N> for LinearObse
     fn linearise(&self, mean: &SVector<T, N>) -> Result<(T, SparseRow<T, K>), Error> {
         let expected = self.row.dot(mean).ok_or(Error::IndexOutOfRange)?;
         // In fixed point the difference may leave the rail.
-        if !(T::SPREADS || self.measured.is_finite() && expected.is_finite()) {
+        if !(T::IS_FLOAT || self.measured.is_finite() && expected.is_finite()) {
             return Err(Error::NotFinite);
         }
         Ok((self.measured - expected, self.row))

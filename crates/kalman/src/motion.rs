@@ -82,7 +82,7 @@ impl<T: Scalar, const D: usize, const N: usize> Process<T, N> for ConstantVeloci
 /// The sum of a state and its change; what is on a rail of fixed point stays there.
 #[inline(always)]
 fn moved<T: Scalar>(state: T, change: T) -> T {
-    if T::SPREADS || state.is_finite() && change.is_finite() {
+    if T::IS_FLOAT || state.is_finite() && change.is_finite() {
         state + change
     } else if state.is_finite() {
         change

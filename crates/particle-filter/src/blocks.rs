@@ -1,7 +1,15 @@
 //! Passes over particles in blocks that fit into registers and cache lines: arrays of a known length, so that the
 //! compiler needs no bounds checks and vectorises the loops.
 
+use kestirim_arithmetic::vectors::{Kernel, Vectors};
 use kestirim_scalar::Scalar;
+
+/// Runs a kernel on the widest vectors of the processor; in fixed point, whose products no vectors speed up, on those
+/// that the program is compiled for, so that less is compiled.
+#[inline(always)]
+pub(crate) fn on_vectors<T: Scalar, K: Kernel>(kernel: K) -> K::Output {
+    if T::IS_FLOAT { Vectors::widest().run(kernel) } else { kernel.run() }
+}
 
 /// Number of particles in a block.
 pub(crate) const BLOCK: usize = 32;

@@ -1,7 +1,7 @@
-use kestirim_arithmetic::vectors::{Kernel, Vectors};
+use kestirim_arithmetic::vectors::Kernel;
 use kestirim_scalar::Scalar;
 
-use crate::blocks::{BLOCK, Points};
+use crate::blocks::{BLOCK, Points, on_vectors};
 use crate::weights::{Weights, never};
 
 /// Weighted mean and covariance of a set of points.
@@ -25,7 +25,7 @@ impl<T: Scalar, const D: usize> Moments<T, D> {
     /// Moments of weighted points, computed on the widest vectors of the processor.
     #[inline(always)]
     pub(crate) fn of<const N: usize>(weights: &Weights<T, N>, points: &impl Points<T, D>) -> Self {
-        Vectors::widest().run(Looking { weights, points })
+        on_vectors::<T, _>(Looking { weights, points })
     }
 
     #[inline(always)]

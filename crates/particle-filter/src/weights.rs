@@ -1,7 +1,7 @@
-use kestirim_arithmetic::vectors::{Kernel, Vectors};
+use kestirim_arithmetic::vectors::Kernel;
 use kestirim_scalar::Scalar;
 
-use crate::blocks::{BLOCK, Block, Points, gather};
+use crate::blocks::{BLOCK, Block, Points, gather, on_vectors};
 use crate::likelihood::Closure;
 use crate::{Error, Likelihood};
 
@@ -140,7 +140,7 @@ impl<T: Scalar, const N: usize> Weights<T, N> {
         points: &impl Points<T, D>,
         likelihood: &impl Likelihood<T, D>,
     ) -> Result<Update<T>, Error> {
-        Vectors::widest().run(Weighing { weights: self, points, likelihood })
+        on_vectors::<T, _>(Weighing { weights: self, points, likelihood })
     }
 
     #[inline(always)]

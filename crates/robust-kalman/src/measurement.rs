@@ -24,7 +24,7 @@ impl<'a, T: Scalar> Measurement<'a, T> {
     #[inline(always)]
     pub(crate) fn left<const N: usize>(&self, prior: &Gaussian<T, N>, now: &Gaussian<T, N>) -> T {
         // In fixed point the difference would leave the rail, and be taken for a measurement.
-        if !(T::SPREADS || self.innovation.is_finite()) {
+        if !(T::IS_FLOAT || self.innovation.is_finite()) {
             return self.innovation;
         }
         let (before, after) = (prior.mean.as_array(), now.mean.as_array());

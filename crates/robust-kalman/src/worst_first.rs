@@ -134,7 +134,7 @@ impl<T: Scalar, W, S, A, const N: usize> Run<'_, '_, T, W, S, A, N> {
     /// point, whose resolution is the same for large and small numbers, releases are ruled out, and passes are made
     /// instead.
     fn rounding(&self) -> T {
-        if !T::SPREADS {
+        if !T::IS_FLOAT {
             return T::MAX;
         }
         let variances = self.prior.covariance.variances();

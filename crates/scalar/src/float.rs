@@ -31,7 +31,7 @@ macro_rules! impl_scalar_for_float {
                 Some(whole) => whole,
                 None => u32::MAX,
             };
-            const SPREADS: bool = true;
+            const IS_FLOAT: bool = true;
 
             #[inline(always)]
             fn from_f64(value: f64) -> Self {

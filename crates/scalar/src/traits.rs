@@ -49,9 +49,9 @@ pub trait Scalar:
     const MAX: Self;
     /// The largest whole number up to which all are exact: a sum of as many ones neither saturates nor is rounded.
     const MAX_WHOLE: u32;
-    /// Whether numbers that are not finite make sums and products not finite either. True for floats; fixed point may
-    /// leave a rail.
-    const SPREADS: bool = false;
+    /// Whether this is floating point: there is room for any variance, and sums and products of numbers that are not
+    /// finite are not finite either. Fixed point may leave a rail.
+    const IS_FLOAT: bool = false;
 
     /// The nearest value; saturates if out of range. NaN becomes NaN, or the lower rail in fixed point.
     ///

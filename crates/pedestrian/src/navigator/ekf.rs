@@ -77,9 +77,8 @@ impl<T: Scalar> Ekf<T> {
         let attitude = self.noise.attitude_variance * dt;
         p.add_variance::<3>(attitude);
         p.add_variance::<4>(attitude);
-        let is_float = T::headroom(0) == Some(0);
         let most = T::from_f64(Self::MOST_HEADING);
-        if is_float || p.get(5, 5).is_some_and(|heading| heading < most) {
+        if T::IS_FLOAT || p.get(5, 5).is_some_and(|heading| heading < most) {
             p.add_variance::<5>(attitude);
         }
     }

@@ -212,8 +212,7 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize> AugmentedFilter<
     #[inline(always)]
     pub(super) fn bounded(&self, transition: &AugmentedTransition<T, N, K>) -> SVector<T, N> {
         let mut bounded = transition.fading;
-        // Floating-point sums need no headroom.
-        if T::headroom(0) == Some(0) {
+        if T::IS_FLOAT {
             return bounded;
         }
         let least = T::from_f64(UNITS_A_SIGMA * UNITS_A_SIGMA);

@@ -77,7 +77,7 @@ impl Scalar for Counted {
     const TWO: Self = Self(2.0);
     const PI: Self = Self(std::f64::consts::PI);
     const EPSILON: Self = Self(f64::EPSILON);
-    const SPREADS: bool = true;
+    const IS_FLOAT: bool = true;
     const MIN: Self = Self(f64::MIN);
     const MAX: Self = Self(f64::MAX);
     const MAX_WHOLE: u32 = u32::MAX;
