@@ -121,8 +121,7 @@ enum kestirim_status
   KESTIRIM_STATUS_TOO_FEW = 13,
   // The measurements contradict each other, or no position explains them.
   KESTIRIM_STATUS_CONTRADICTORY = 14,
-  // The time since the last sample is too long to predict the estimate over it, or is not a multiple of the model's
-  // interval; or no ephemeris or product covers the time.
+  // The time since the last sample is not a multiple of the model's interval; or no ephemeris or product covers the time.
   KESTIRIM_STATUS_GAP = 15,
   // The geometry determines no position, the corners enclose no area, or a matrix is singular.
   KESTIRIM_STATUS_GEOMETRY = 16,

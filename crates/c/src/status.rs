@@ -34,8 +34,7 @@ pub enum Status {
     TooFew = 13,
     /// The measurements contradict each other, or no position explains them.
     Contradictory = 14,
-    /// The time since the last sample is too long to predict the estimate over it, or is not a multiple of the model's
-    /// interval; or no ephemeris or product covers the time.
+    /// The time since the last sample is not a multiple of the model's interval; or no ephemeris or product covers the time.
     Gap = 15,
     /// The geometry determines no position, the corners enclose no area, or a matrix is singular.
     Geometry = 16,
@@ -74,7 +73,7 @@ impl Status {
         (Self::TooMany, c"there are more than there is room for"),
         (Self::TooFew, c"there are fewer than are needed"),
         (Self::Contradictory, c"the measurements contradict each other"),
-        (Self::Gap, c"the interval is too long or not the model's, or no orbit covers it"),
+        (Self::Gap, c"the interval is not the model's, or no orbit covers it"),
         (Self::Geometry, c"the geometry determines nothing"),
         (Self::Refused, c"the estimator refused the step"),
         (Self::NoSnapshot, c"the bytes are no snapshot"),
@@ -142,7 +141,7 @@ impl From<kestirim_uav_estimator::Error> for Status {
             | Error::Design(kestirim_observer_design::Error::NotFinite)
             | Error::Observer(kestirim_luenberger::Error::NotFinite) => Self::NotFinite,
             Error::OutOfOrder => Self::OutOfOrder,
-            Error::Gap(_) | Error::WrongInterval { .. } => Self::Gap,
+            Error::WrongInterval { .. } => Self::Gap,
             Error::Singular => Self::Geometry,
             Error::Estimate(error) => error.into(),
             _ => Self::Refused,

@@ -11,8 +11,6 @@ pub enum Error {
     /// The sample is not later than the previous one. If it is more than a second older, the clock was set back
     /// instead.
     OutOfOrder,
-    /// The gap (s) is longer than a million usual intervals.
-    Gap(f64),
     /// A discrete-time model cannot be stepped over this interval: it is not a multiple of the model's own (to within
     /// a tenth of it), or more than 100,000 of them.
     WrongInterval {
@@ -58,7 +56,6 @@ impl fmt::Display for Error {
         match self {
             Self::NotFinite => formatter.write_str("a number is not finite"),
             Self::OutOfOrder => formatter.write_str("the sample is not later than the one before"),
-            Self::Gap(gap) => write!(formatter, "no estimate outlives a gap of {gap} s"),
             Self::WrongInterval { own, found } => {
                 write!(formatter, "the model is for intervals of {own} s, found one of {found} s")
             }

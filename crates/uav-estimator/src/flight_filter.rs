@@ -3,7 +3,7 @@ use kestirim_kalman::Innovation;
 use kestirim_scalar::Scalar;
 use nalgebra::{SMatrix, SVector};
 
-use crate::transitions::{Transitions, interval_us, is_set_back};
+use crate::transitions::Transitions;
 use crate::watch::Watch;
 use crate::{Dynamics, Error, KalmanFilter, Noise, Sample, Transition};
 
@@ -73,27 +73,28 @@ impl<T: Scalar, const P: usize, const L: usize> FlightFilter<T, P, L> {
         self.watch.health()
     }
 
-    /// Processes a sample, and returns the innovations of its outputs. If it is more than a second older than the
-    /// previous one, the clock was set back, and the filter restarts.
+    /// Processes a sample, and returns the innovations of its outputs. The filter begins anew with a sample that is more
+    /// than a second older than the previous one (the clock was set back), or more than a million usual intervals later;
+    /// with a discrete-time model also with one that, after more than ten intervals, is no whole number of steps later.
     ///
     /// # Errors
-    /// [`Error::OutOfOrder`], [`Error::Gap`], [`Error::WrongInterval`], [`Error::NotFinite`], [`Error::Design`] or
+    /// [`Error::OutOfOrder`], [`Error::WrongInterval`], [`Error::NotFinite`], [`Error::Design`] or
     /// [`Error::Estimate`]; the filter is unchanged.
     pub fn take(&mut self, sample: &Sample<P>) -> Result<[Option<Innovation<f64>>; P], Error> {
         if !sample.input.iter().copied().all(f64::is_finite) {
             return Err(Error::NotFinite);
         }
-        let mut next = self.filter;
+        let (mut next, mut watch) = (self.filter, self.watch);
         let mut moved = None;
-        if self.before.is_some_and(|(before_us, _)| is_set_back(before_us, sample.time_us)) {
-            next = next.begun_anew(&SVector::from(UNKNOWN));
-        } else if let Some((before_us, input)) = &self.before {
-            let interval_us = interval_us(*before_us, sample.time_us)?;
-            let transition = self.transitions.over(interval_us, Transition::new)?;
-            next.predict(&transition, input)?;
-            moved = Some((interval_us, transition));
+        if let Some((before_us, input)) = &self.before {
+            moved = self.transitions.between(*before_us, sample.time_us, Transition::new)?;
+            if let Some((_, transition)) = &moved {
+                next.predict(transition, input)?;
+            } else {
+                next = next.begun_anew(&SVector::from(UNKNOWN));
+                watch.begin_anew();
+            }
         }
-        let mut watch = self.watch;
         let judged = next.correct_gated(&sample.measured, &mut watch.gates)?;
         watch.count(&sample.measured, &judged);
         self.filter = next;

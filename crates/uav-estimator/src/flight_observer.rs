@@ -8,7 +8,7 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::innovation_gate::InnovationGate;
 use crate::monitor::Monitor;
-use crate::transitions::{Transitions, interval_us, is_set_back};
+use crate::transitions::Transitions;
 use crate::{Dynamics, Error, Sample, Step, current_gain, observer_gain};
 
 /// A Luenberger observer along a flight: samples at a usual interval, with gaps and missing outputs.
@@ -59,8 +59,9 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
         usual: f64,
     ) -> Result<Self, Error> {
         let usual_us = libm::round(usual * 1e6) as i64;
-        let transitions = Transitions::new(*dynamics, usual, SVector::zeros());
-        let plant = transitions.over(usual_us, transition)?;
+        let noise = SVector::zeros();
+        let plant = transition(&dynamics.over(usual, usual, &noise)?);
+        let transitions = Transitions::new(*dynamics, usual, noise);
         let gain = current_gain(&plant, &observer_gain(&plant, c, poles)?)?;
         let gains = CurrentGains::new(&Plant { a: plant.a, b: plant.b, c: *c }, &gain);
         let observer = CurrentObserver::new(&gains, &SVector::zeros())?;
@@ -80,41 +81,43 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
     }
 
     /// Whether the estimate is reliable: reports `rejected` if over about 50 samples more than a tenth of the
-    /// measurements were rejected. An observer has no variances: whether its innovations are too large, or its inputs
+    /// measurements contradicted it. An observer has no variances: whether its innovations are too large, or its inputs
     /// late, only a [`FlightFilter`](crate::FlightFilter) run in parallel can tell.
     pub fn health(&self) -> Health {
         self.monitor.health()
     }
 
-    /// Processes a sample, and returns the innovations of its outputs, in their units. If it is more than a second
-    /// older than the previous one, the clock was set back, and the observer restarts.
+    /// Processes a sample, and returns the innovations of its outputs, in their units. It begins anew where a
+    /// [`FlightFilter`](crate::FlightFilter::take) does.
     ///
     /// # Errors
-    /// [`Error::OutOfOrder`], [`Error::Gap`], [`Error::WrongInterval`], [`Error::NotFinite`], [`Error::Design`] or
+    /// [`Error::OutOfOrder`], [`Error::WrongInterval`], [`Error::NotFinite`], [`Error::Design`] or
     /// [`Error::Observer`]; the observer is unchanged.
     pub fn take(&mut self, sample: &Sample<P>) -> Result<[Option<f64>; P], Error> {
         let numbers = sample.input.iter().chain(sample.measured.iter().flatten());
         if !numbers.copied().all(f64::is_finite) {
             return Err(Error::NotFinite);
         }
-        let mut next = self.observer;
-        let mut bridged = None;
-        let set_back = |before: &&(i64, SVector<f64, 2>)| is_set_back(before.0, sample.time_us);
-        if let Some((before_us, input)) = self.before.as_ref().filter(|before| !set_back(before)) {
-            let interval_us = interval_us(*before_us, sample.time_us)?;
-            if interval_us == self.usual_us {
+        let (mut next, mut gates) = (self.observer, self.gates);
+        let (mut bridged, mut begins) = (None, true);
+        if let Some((before_us, input)) = &self.before {
+            if sample.time_us.checked_sub(*before_us) == Some(self.usual_us) {
                 next.predict(&input.map(T::from_f64))?;
+                begins = false;
             } else {
-                let step = self.transitions.over(interval_us, transition)?;
+                bridged = self.transitions.between(*before_us, sample.time_us, transition)?;
+            }
+            if let Some((_, step)) = &bridged {
                 let there = step.a * next.estimate().map(T::to_f64) + step.b * input;
                 next.reset(&finite(&there)?)?;
-                bridged = Some((interval_us, step));
+                begins = false;
             }
-        } else {
+        }
+        if begins {
             next.reset(&finite(&self.measured_states(&sample.measured))?)?;
+            gates = [InnovationGate::default(); P];
         }
         let expected = (self.c * next.estimate().map(T::to_f64)).into();
-        let mut gates = self.gates;
         let (innovations, admitted) = judged(&mut gates, &sample.measured, &expected);
         next.correct(&SVector::from(admitted).map(T::from_f64))?;
         self.observer = next;
@@ -123,14 +126,15 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
         if let Some((interval_us, step)) = &bridged {
             self.transitions.keep(*interval_us, step);
         }
-        let mut left_out = 0;
-        let outputs = sample.measured.iter().zip(&admitted);
-        for (rejected, (measured, admitted)) in self.rejected.iter_mut().zip(outputs) {
+        let mut contradicting = 0;
+        let outputs = sample.measured.iter().zip(&admitted).zip(&gates);
+        for (rejected, ((measured, admitted), gate)) in self.rejected.iter_mut().zip(outputs) {
             let is_rejected = measured.is_some_and(|measured| measured != *admitted);
             *rejected = rejected.saturating_add(u32::from(is_rejected));
-            left_out += usize::from(is_rejected);
+            // What an open gate admits contradicts no less.
+            contradicting += usize::from(is_rejected || measured.is_some() && gate.is_open());
         }
-        self.monitor.count(sample.measured.iter().flatten().count(), left_out, iter::empty());
+        self.monitor.count(sample.measured.iter().flatten().count(), contradicting, iter::empty());
         Ok(innovations)
     }
 

@@ -22,6 +22,11 @@ pub(crate) struct InnovationGate {
 }
 
 impl InnovationGate {
+    /// Whether the last innovations contradicted the estimate so often that they are used all the same.
+    pub(crate) const fn is_open(&self) -> bool {
+        self.gate.is_open()
+    }
+
     /// Whether an output with this innovation is to be used.
     pub(crate) fn admits(&mut self, innovation: f64) -> bool {
         let size = innovation.abs();

@@ -25,8 +25,11 @@ impl Moves for Dynamics {
     }
 }
 
-/// Longest gap, in usual intervals.
+/// Longest time over which an estimate is predicted, in usual intervals.
 const LONGEST_GAP: f64 = 1e6;
+/// Time after which samples that are no whole number of a discrete-time model's steps away are not refused any longer,
+/// in usual intervals.
+const PATIENCE: f64 = 10.0;
 
 /// A cache of a model's steps over the intervals between samples: the last one for each remainder of the interval in
 /// µs modulo L.
@@ -63,22 +66,34 @@ impl<D: Moves, S: Copy, const L: usize> Transitions<D, S, L> {
         self.known = [None; L];
     }
 
-    /// The step over `interval_us` (µs), converted by `form`.
-    pub(crate) fn over(
+    /// The time between two samples (µs) and the step over it, converted by `form`. `None` if no step leads there, and
+    /// the estimate begins anew: the clock was set back, the time is too long, or a discrete-time model's samples have
+    /// been off its steps for a while.
+    pub(crate) fn between(
         &self,
-        interval_us: i64,
+        before_us: i64,
+        now_us: i64,
         form: impl FnOnce(&D::Step) -> S,
-    ) -> Result<S, Error> {
+    ) -> Result<Option<(i64, S)>, Error> {
+        if is_set_back(before_us, now_us) {
+            return Ok(None);
+        }
+        let interval_us = now_us.checked_sub(before_us).filter(|interval| *interval > 0);
+        let interval_us = interval_us.ok_or(Error::OutOfOrder)?;
         if let Some(Some((known_us, step))) = self.known.get(Self::place(interval_us))
             && *known_us == interval_us
         {
-            return Ok(*step);
+            return Ok(Some((interval_us, *step)));
         }
         let interval = interval_us as f64 / 1e6;
         if interval > LONGEST_GAP * self.usual {
-            return Err(Error::Gap(interval));
+            return Ok(None);
         }
-        Ok(form(&self.dynamics.over(interval, self.usual, &self.noise)?))
+        match self.dynamics.over(interval, self.usual, &self.noise) {
+            Ok(step) => Ok(Some((interval_us, form(&step)))),
+            Err(Error::WrongInterval { .. }) if interval > PATIENCE * self.usual => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 
     /// Caches the step of an interval.
@@ -99,12 +114,6 @@ const SET_BACK_US: i64 = 1_000_000;
 
 /// Whether a sample is so much older than the previous one that the clock was set back. Otherwise a single time stamp
 /// far in the future would be the last one accepted.
-pub(crate) fn is_set_back(before_us: i64, now_us: i64) -> bool {
+fn is_set_back(before_us: i64, now_us: i64) -> bool {
     before_us.saturating_sub(now_us) > SET_BACK_US
-}
-
-/// The time between two samples, µs.
-pub(crate) fn interval_us(before_us: i64, now_us: i64) -> Result<i64, Error> {
-    let interval = now_us.checked_sub(before_us).filter(|interval| *interval > 0);
-    interval.ok_or(Error::OutOfOrder)
 }

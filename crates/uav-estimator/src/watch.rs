@@ -28,6 +28,12 @@ impl<const P: usize> Watch<P> {
         lateness: Lateness::NONE,
     };
 
+    /// Forgets what was judged by an estimate that begins anew, but not how many measurements were rejected.
+    pub(crate) fn begin_anew(&mut self) {
+        self.gates = [Gate::NEW; P];
+        self.lateness = Lateness::NONE;
+    }
+
     /// Adds a sample: the result for its outputs, and those outputs that are checked for lateness.
     pub(crate) fn count(&mut self, timed: &[Option<f64>; P], judged: &Gated<P>) {
         for (rejected, is_left_out) in self.rejected.iter_mut().zip(judged.is_left_out) {

@@ -5,7 +5,7 @@ use nalgebra::SVector;
 
 use super::{AugmentedFilter, AugmentedModel, AugmentedStep, AugmentedTransition};
 use crate::kalman_filter::{GATE, Gated};
-use crate::transitions::{Moves, Transitions, interval_us, is_set_back};
+use crate::transitions::{Moves, Transitions};
 use crate::watch::Watch;
 use crate::{Error, Sample};
 
@@ -71,7 +71,7 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize, const L: usize>
     /// previous one, the clock was set back, and the filter restarts.
     ///
     /// # Errors
-    /// [`Error::OutOfOrder`], [`Error::Gap`], [`Error::NotFinite`], [`Error::Design`] or [`Error::Estimate`]; the
+    /// [`Error::OutOfOrder`], [`Error::NotFinite`], [`Error::Design`] or [`Error::Estimate`]; the
     /// filter is unchanged.
     pub fn take(&mut self, sample: &Sample<P>) -> Result<[Option<Innovation<f64>>; P], Error> {
         taken(&mut self.filter, &mut self.watch, &mut self.transitions, &mut self.before, sample)
@@ -158,17 +158,18 @@ where
     if !numbers.copied().all(f64::is_finite) {
         return Err(Error::NotFinite);
     }
-    let mut next = *filter;
+    let (mut next, mut watched) = (*filter, *watch);
     let mut moved = None;
-    if before.is_some_and(|(before_us, _)| is_set_back(before_us, sample.time_us)) {
-        next = next.begun_anew();
-    } else if let Some((before_us, input)) = before {
-        let interval_us = interval_us(*before_us, sample.time_us)?;
-        let transition = transitions.over(interval_us, |step| next.transition(step))?;
-        next.predict(&transition, &input.map(T::from_f64))?;
-        moved = Some((interval_us, transition));
+    if let Some((before_us, input)) = before {
+        let form = |step: &D::Step| next.transition(step);
+        moved = transitions.between(*before_us, sample.time_us, form)?;
+        if let Some((_, transition)) = &moved {
+            next.predict(transition, &input.map(T::from_f64))?;
+        } else {
+            next = next.begun_anew();
+            watched.begin_anew();
+        }
     }
-    let mut watched = *watch;
     let judged = judged(&mut next, sample, &mut watched)?;
     // For outputs with direct dependence on the inputs, a slightly wrong gain looks like lateness.
     let mut timed = sample.measured;

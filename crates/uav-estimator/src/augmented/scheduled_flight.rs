@@ -75,7 +75,7 @@ impl<T: Scalar, const N: usize, const K: usize, const P: usize, const G: usize, 
     /// is more than a second older than the previous one, the clock was set back, and the filter restarts.
     ///
     /// # Errors
-    /// [`Error::OutOfOrder`], [`Error::Gap`], [`Error::NotFinite`], [`Error::Design`] or [`Error::Estimate`]; the
+    /// [`Error::OutOfOrder`], [`Error::NotFinite`], [`Error::Design`] or [`Error::Estimate`]; the
     /// filter is unchanged.
     pub fn take(&mut self, sample: &Sample<P>) -> Result<[Option<Innovation<f64>>; P], Error> {
         taken(&mut self.filter, &mut self.watch, &mut self.transitions, &mut self.before, sample)

@@ -165,12 +165,55 @@ fn what_is_refused_changes_nothing() {
     assert_eq!(filter.take(&at(-5)), Err(Error::OutOfOrder));
     let between = Error::WrongInterval { own: USUAL_S, found: 0.015 };
     assert_eq!(filter.take(&at(25_000)), Err(between));
-    assert_eq!(filter.take(&at(20_000_000_000)), Err(Error::Gap(19_999.99)));
     let wild = Sample { measured: [Some(f64::NAN), None, None], ..samples[2] };
     assert_eq!(filter.take(&wild), Err(Error::NotFinite));
     assert_eq!(filter, before);
     // Two steps of the model, to within a tenth.
     assert!(filter.take(&at(30_500)).is_ok());
+}
+
+/// An aircraft that is parked overnight, or whose log goes on between the steps of a discrete-time model, is followed
+/// again: as by a new estimator.
+#[test]
+fn what_no_step_leads_to_begins_anew() {
+    let (samples, _) = flight(&(0..400).collect::<Vec<_>>());
+    let c = rate_airspeed_and_pitch();
+    let poles = [-3.0, -3.5, -4.0, -4.5].map(|pole: f64| Complex::from((pole * USUAL_S).exp()));
+    let plant = zero_order_hold(&thesis_like().a, &thesis_like().b, USUAL_S).unwrap();
+    let discrete = Dynamics::Discrete { step: plant, interval: USUAL_S };
+    let (flown, later) = samples.split_at(200);
+    // A pause of two nights; half a step; and a clock that was set back.
+    for (model, pause_us, refused) in
+        [(dynamics(), 2 * 86_400_000_000, 0), (discrete, 5_000, 9), (dynamics(), -10_000_000, 0)]
+    {
+        let filter = || FlightFilter::<f64, 3>::new(&model, &c, &noise(), USUAL_S).unwrap();
+        let observer = || FlightObserver::<f64, 3>::new(&model, &c, &poles, USUAL_S).unwrap();
+        let (mut kept, mut new) = ((filter(), observer()), (filter(), observer()));
+        for sample in flown {
+            kept.0.take(sample).unwrap();
+            kept.1.take(sample).unwrap();
+        }
+        for (index, sample) in later.iter().enumerate() {
+            // An output that jumped meanwhile contradicts the old estimate, not the new one.
+            let mut sample = Sample { time_us: sample.time_us + pause_us, ..*sample };
+            sample.measured[1] = sample.measured[1].map(|airspeed| airspeed + 3.0);
+            if index < refused {
+                assert!(
+                    matches!(kept.0.take(&sample), Err(Error::WrongInterval { .. })),
+                    "{index}"
+                );
+                assert!(
+                    matches!(kept.1.take(&sample), Err(Error::WrongInterval { .. })),
+                    "{index}"
+                );
+            } else {
+                assert_eq!(kept.0.take(&sample), new.0.take(&sample), "{pause_us} {index}");
+                assert_eq!(kept.1.take(&sample), new.1.take(&sample), "{pause_us} {index}");
+            }
+        }
+        assert_eq!(kept.0.filter(), new.0.filter());
+        assert_eq!(kept.1.estimate(), new.1.estimate());
+    }
 }
 
 #[test]
@@ -262,10 +305,15 @@ fn what_has_changed_is_followed() {
     let poles = [-3.0, -3.5, -4.0, -4.5].map(|pole: f64| Complex::from((pole * USUAL_S).exp()));
     let mut filter = FlightFilter::<f64, 3>::new(&dynamics(), &c, &noise(), USUAL_S).unwrap();
     let mut observer = FlightObserver::<f64, 3>::new(&dynamics(), &c, &poles, USUAL_S).unwrap();
-    for sample in &samples {
+    let mut is_told = false;
+    for (index, sample) in samples.iter().enumerate() {
         filter.take(sample).unwrap();
         observer.take(sample).unwrap();
+        let rejects = observer.health().has(Reason::Rejected);
+        assert!(index >= 1000 || !rejects, "{index}");
+        is_told |= rejects;
     }
+    assert!(is_told, "one output of three has failed");
     let expected = samples.last().unwrap().measured[1].unwrap();
     let found = [filter.filter().estimate()[2], observer.estimate()[2]];
     assert!(found.iter().all(|found| (found - expected).abs() < 10.0), "{found:?} {expected}");
