@@ -76,6 +76,8 @@ impl<T: Scalar> Standstill<T> {
 impl<T: Scalar> Alignment<T> {
     const BLOCK_US: u32 = 125_000;
     const BLOCKS: i32 = 4;
+    /// The largest number of samples that are added up: fixed point has room for the sum of so many forces of 10 m/s².
+    const MOST_SAMPLES: i32 = 200;
     /// The largest difference of rates between the blocks of a standstill (rad/s).
     const RATE_SPREAD: f64 = 0.03;
     /// The largest rate that a bias explains (rad/s): a larger one is no standstill, however steady.
@@ -141,9 +143,12 @@ impl<T: Scalar> Alignment<T> {
         // The lower 32 bits are enough for differences.
         let time_us = sample.time_us as u32;
         let begun_us = *self.block.begun_us.get_or_insert(time_us);
-        self.block.rate += sample.angular_rate;
-        self.block.force += sample.specific_force;
-        self.block.count += 1;
+        // Of a fast sensor the first are enough.
+        if self.block.count < Self::MOST_SAMPLES {
+            self.block.rate += sample.angular_rate;
+            self.block.force += sample.specific_force;
+            self.block.count += 1;
+        }
         if time_us.wrapping_sub(begun_us) < Self::BLOCK_US {
             return None;
         }

@@ -184,6 +184,9 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                 self.clipping.remember(&sample.angular_rate);
                 if verdict.stance {
                     let landing = !self.was_stance;
+                    if landing && !is_within(navigator) {
+                        self.health.out_of_range();
+                    }
                     if landing && self.health.landing(&navigator.velocity(), self.config.sensor) {
                         self.is_tilted = true;
                         // Something in the swing was missed: a stall, an impact, a turn.
@@ -248,15 +251,17 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
     }
 
     pub(crate) fn warnings(&self) -> Warnings {
-        // Fixed-point numbers saturate at their largest value.
-        let is_within = |navigator: &N| {
-            let (position, velocity) = (navigator.position(), navigator.velocity());
-            T::all_finite(position.as_array()) && T::all_finite(velocity.as_array())
-        };
-        let out_of_range =
+        let warnings = self.health.warnings();
+        let is_beyond =
             self.strides.path_length() == T::MAX || !self.navigator.as_ref().is_none_or(is_within);
-        Warnings { out_of_range, ..self.health.warnings() }
+        Warnings { out_of_range: warnings.out_of_range || is_beyond, ..warnings }
     }
+}
+
+/// Whether position and velocity are within the range of the numbers: fixed point saturates at its largest value.
+fn is_within<T: Scalar, N: Navigator<T>>(navigator: &N) -> bool {
+    let (position, velocity) = (navigator.position(), navigator.velocity());
+    T::all_finite(position.as_array()) && T::all_finite(velocity.as_array())
 }
 
 /// Passes a step to the detection of clipping, and advances by what was missed at the ends of the range.

@@ -155,6 +155,11 @@ impl<T: Scalar> Health<T> {
         self.warnings.gyroscope_saturated = true;
     }
 
+    /// Notes that the numbers had no room for a swing.
+    pub(crate) fn out_of_range(&mut self) {
+        self.warnings.out_of_range = true;
+    }
+
     /// Notes that samples are missing.
     pub(crate) fn gap(&mut self) {
         self.warnings.gaps = true;

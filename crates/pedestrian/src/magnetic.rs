@@ -20,9 +20,9 @@ use nalgebra::SVector;
 pub struct MagneticHeading<T: Scalar> {
     stands: [Option<Stand<T>>; CAPACITY],
     now: Option<Stand<T>>,
-    /// The sum Σ Δt² over all pairs (min²).
+    /// The sum Σ Δt² over all pairs (in units of ten minutes, squared).
     times: T,
-    /// The sum Σ Δt·Δψ over all pairs (min·rad).
+    /// The sum Σ Δt·Δψ over all pairs (rad times ten minutes).
     turned: T,
 }
 
@@ -153,9 +153,12 @@ impl<T: Scalar> MagneticHeading<T> {
         }
         for before in self.stands.iter().flatten() {
             if let Some(turned) = stand.turned_since(before, deviation) {
-                let minutes = minutes::<T>(stand.begun_us.saturating_sub(before.ended_us));
-                self.times += minutes * minutes;
-                self.turned += minutes * turned;
+                let time = tens_of_minutes::<T>(stand.begun_us.saturating_sub(before.ended_us));
+                let (times, turned) = (self.times + time * time, self.turned + time * turned);
+                // In fixed point, what would reach a rail is left out of both sums.
+                if times < T::MAX && turned.abs() < T::MAX {
+                    (self.times, self.turned) = (times, turned);
+                }
             }
         }
         if let Some(free) = self.stands.iter_mut().find(|stand| stand.is_none()) {
@@ -168,13 +171,13 @@ impl<T: Scalar> MagneticHeading<T> {
     pub fn rate(&self) -> Option<T> {
         let least = T::from_f64(2.0 * Self::REPEATABILITY) * self.times.sqrt();
         (self.times > T::ZERO && self.turned.abs() > least)
-            .then(|| self.turned / self.times * T::from_f64(1.0 / 60.0))
+            .then(|| self.turned / self.times * T::from_f64(1.0 / 600.0))
     }
 }
 
-/// Converts microseconds to minutes.
-fn minutes<T: Scalar>(us: u64) -> T {
-    T::from_micro((us / 60).min(i32::MAX as u64) as i32)
+/// Converts microseconds to tens of minutes, of which fixed point has room for squares.
+fn tens_of_minutes<T: Scalar>(us: u64) -> T {
+    T::from_micro((us / 600).min(i32::MAX as u64) as i32)
 }
 
 #[cfg(test)]
@@ -253,6 +256,17 @@ mod tests {
             assert!((rate * 58.0 / 0.05 - 1.0).abs() < 0.05, "{rate}");
         }
         assert!(rate::<f64>(Second { samples: 102, ..SAME }).is_some());
+    }
+
+    #[test]
+    fn hours_apart_fixed_point_shows_the_same_drift() {
+        for begin in [600, 7_000, 20_000, 40_000] {
+            let late = Second { begin, error: 0.7, ..SAME };
+            let (rate, fixed) = (rate::<f64>(late).expect("a rate"), rate::<Q12_20>(late));
+            // Pairs that fixed point has no room for show nothing.
+            assert!(fixed.is_none_or(|fixed| (fixed / rate - 1.0).abs() < 0.05), "{begin}");
+            assert!(fixed.is_some() || begin > 20_000, "{begin}");
+        }
     }
 
     #[test]

@@ -6,6 +6,18 @@ use super::*;
 use nalgebra::Vector3;
 use std::vec::Vec;
 
+#[test]
+fn a_fast_sensor_at_rest_shows_gravity_in_fixed_point() {
+    use kestirim_scalar::Q12_20;
+    let mut alignment = Alignment::<Q12_20>::new(SensorClass::Consumer);
+    let specific_force = Vector3::new(0.0, 0.0, STANDARD_GRAVITY).map(Q12_20::from_f64);
+    let at =
+        |k: u64| ImuSample { time_us: k * 250, specific_force, angular_rate: SVector::zeros() };
+    let shown: Vec<_> = (0..8000).filter_map(|k| alignment.update(&at(k))).collect();
+    assert!(!shown.is_empty());
+    assert!(shown.iter().all(|gravity| (gravity.to_f64() - 1.0).abs() < 1e-3), "{shown:?}");
+}
+
 const BIAS: [f64; 3] = [0.02, -0.03, 0.05];
 const GRAVITY: [f64; 3] = [0.0, 0.6, 0.8];
 

@@ -105,6 +105,16 @@ fn a_foot_beyond_the_numbers_is_told() {
     walk.navigator().velocity.y = f64::NAN;
     assert!(walk.engine.warnings().out_of_range);
 
+    // A swing too fast for the numbers stays told when the foot stands again.
+    let mut walk = Walk::<f64>::new(true);
+    walk.on(Some(0.05));
+    walk.on(None);
+    walk.navigator().velocity.y = f64::INFINITY;
+    walk.on(Some(0.05));
+    walk.navigator().velocity.y = 0.0;
+    walk.on(Some(0.05));
+    assert!(walk.engine.warnings().out_of_range);
+
     // Back and forth by 20 m a hundred times: the path reaches the limit of the numbers, the foot stays near.
     let mut walk = Walk::<Q12_20>::new(true);
     walk.on(Some(0.05));
