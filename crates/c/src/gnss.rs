@@ -198,6 +198,9 @@ impl Positioning {
         if !numbers.iter().chain(&eccentricity).all(|number| number.is_finite()) {
             return Err(Status::NotFinite);
         }
+        if process_noise < 0.0 {
+            return Err(Status::InvalidArgument);
+        }
         let motion =
             if process_noise > 0.0 { Motion::Kinematic { process_noise } } else { Motion::Static };
         let config = match broadcast {

@@ -47,7 +47,7 @@ const SKY_TURNS: f64 = 2e-4;
 /// The standard deviation given to a receiver that was seen to move, in lengths of its step, so that the old place
 /// hardly pulls it back.
 const ANYWHERE: f64 = 5.0;
-/// Phases are not compared between epochs farther apart than this many times the shortest interval, as delays change,
+/// Phases are not compared between epochs farther apart than this many times the usual interval, as delays change,
 /// too.
 const FARTHEST_APART: f64 = 1.5;
 
@@ -69,7 +69,7 @@ type Offsets = [Option<usize>; OTHERS];
 pub(crate) struct Running<const N: usize> {
     pub(crate) estimate: Gaussian<f64, N>,
     pub(crate) time: GpsTime,
-    /// The shortest time between two epochs so far, s.
+    /// The usual time between two epochs, s.
     pub(crate) interval: Option<f64>,
     /// The first state that may be an ambiguity: those of gradients precede it, if they are estimated.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "first_ambiguity"))]
@@ -168,7 +168,10 @@ impl<const N: usize> Running<N> {
             return Err(Error::TimeNotAdvancing);
         }
         self.time = time;
-        self.interval = Some(self.interval.map_or(elapsed, |interval| interval.min(elapsed)));
+        self.interval = Some(self.interval.map_or(elapsed, |usual| {
+            // A gap, or an epoch between others, is no change of rate. (`clamp` can panic.)
+            usual + (elapsed - usual).max(-usual / 8.0).min(usual / 8.0)
+        }));
         self.rest.advance(elapsed);
         if let Motion::Kinematic { process_noise } = config.motion {
             for coordinate in 0..3 {

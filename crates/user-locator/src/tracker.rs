@@ -184,14 +184,20 @@ where
     /// Processes a measurement of the present time.
     ///
     /// # Errors
-    /// [`Error::Filter`] with `Degenerate` if no particle explains it; nothing is changed.
+    /// [`Error::Filter`] with `Degenerate` if no particle explains it; nothing is changed, but if the last measurements
+    /// have not been explained either, the cloud is spread anew.
     pub fn measure<R: Rng + ?Sized>(
         &mut self,
         measurement: &Measurement<T>,
         rng: &mut R,
     ) -> Result<Update<T>, Error> {
-        let update = self.particles.weigh(&Seen { channel: &self.channel, measurement })?;
-        self.judge(update.log_evidence, rng);
+        let weighed = self.particles.weigh(&Seen { channel: &self.channel, measurement });
+        match &weighed {
+            Ok(update) => self.judge(update.log_evidence, rng),
+            Err(FilterError::Degenerate) => self.judge(T::MIN, rng),
+            Err(_) => (),
+        }
+        let update = weighed?;
         if self.particles.effective() < T::from_binary(self.particles.len() as i32, 0) * T::HALF {
             self.particles.resample(Resampler::Systematic, rng)?;
         }
@@ -208,6 +214,7 @@ where
             self.particles.spread(Start::Random, &self.region.extended(), rng);
             self.velocity_deviation = self.motion.speed;
             self.evidence = T::ZERO;
+            self.estimate = Self::look(&self.particles);
         }
     }
 

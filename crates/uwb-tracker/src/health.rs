@@ -40,7 +40,7 @@ pub struct Health<T> {
     /// Number of positions begun after the first.
     pub restarts: u16,
     /// Number of anchors heard within the last second, or two rounds of the anchors if those take longer, except
-    /// blocked ones, whose ranges have been too long for a while.
+    /// blocked ones, whose ranges have been too long for a while; 255 at most.
     pub heard: u8,
     /// Dilution of precision of the anchors heard; `None` if they do not determine a position.
     pub dilution: Option<T>,
@@ -154,10 +154,10 @@ pub(crate) fn heard_lately<'a, T: Scalar>(
     links.iter().enumerate().filter(move |(_, link)| is_heard(link))
 }
 
-/// Number of anchors heard recently and not blocked.
+/// Number of anchors heard recently and not blocked, 255 at most.
 #[inline]
 pub(crate) fn count_heard<T: Scalar>(links: &[Link<T>], pace: &Pace, time_us: u64) -> u8 {
-    heard_lately(links, pace, time_us).count() as u8
+    heard_lately(links, pace, time_us).count().min(u8::MAX.into()) as u8
 }
 
 /// The properties of an estimate that the health depends on.
@@ -197,7 +197,7 @@ pub(crate) fn health<T: Scalar, const D: usize>(
     still: bool,
 ) -> Health<T> {
     let fresh = heard_lately(links, pace, time_us).map(|(_, link)| link);
-    let heard = fresh.clone().count() as u8;
+    let heard = count_heard(links, pace, time_us);
     let dilution = place.as_ref().and_then(|place| {
         let direction = |link: &Link<T>| expected(place, config, link).direction;
         dilution_of_precision(fresh.clone().map(direction)).ok()

@@ -74,3 +74,32 @@ fn one_that_may_move_is_not_told_of() {
     let last = solutions.last().expect("a solution");
     assert!((error(last) - 0.3).abs() < 0.01, "{}", error(last));
 }
+
+/// An epoch a millisecond after another is no change of rate, by which σ and the check of displacements go.
+#[test]
+fn an_epoch_between_others_changes_neither_sigma_nor_what_is_told() {
+    let [usual, between] = [false, true].map(|is_between| {
+        let mut filter = filter(Motion::Static);
+        let mut last = None;
+        for k in 0..=120 {
+            let seconds = 30.0 * f64::from(k);
+            let more = (is_between && k == 20).then_some(seconds + 0.001);
+            for seconds in [Some(seconds), more].into_iter().flatten() {
+                let place = marker() + Vector3::x() * if k < 110 { 0.0 } else { 0.3 };
+                let observations = observe(seconds, &place);
+                let at = START.plus(seconds);
+                let solution = filter.process(at, &Receiver::default(), &observations);
+                let solution = solution.expect("a solution");
+                if k == 109 {
+                    last = Some((solution.health, solution.covariance.trace().sqrt()));
+                }
+                if k == 110 {
+                    assert_eq!(solution.health, Health::Contradicted(Contradiction::Motion));
+                }
+            }
+        }
+        last.expect("an epoch before the knock")
+    });
+    assert_eq!(usual.0, between.0);
+    assert!((between.1 / usual.1 - 1.0).abs() < 0.05, "{} {}", between.1, usual.1);
+}

@@ -160,6 +160,35 @@ fn what_nothing_explains_changes_nothing() -> Outcome {
     refuses::<Q16_16>()
 }
 
+/// A receiver that hears nothing at all beyond 300 m.
+#[derive(Clone, Copy, Debug)]
+struct ShortOfHearing;
+
+impl<T: Scalar> Likelihood<T> for ShortOfHearing {
+    fn log_likelihood(&self, measurement: &Measurement<T>, user: [T; 2]) -> T {
+        let [x, y] = measurement.place();
+        let [dx, dy] = [user[0] - x, user[1] - y];
+        if dx.hypot(dy) < T::from_f64(300.0) { T::from_f64(-2.0) } else { T::ZERO.ln() }
+    }
+}
+
+/// A cloud that cannot be where its user is heard is spread anew, though no measurement weighs it.
+#[test]
+fn a_user_that_is_heard_elsewhere_is_found_again() -> Outcome {
+    let mut draws = rng(3);
+    let mut tracker =
+        Tracker::<f64, 500, _>::new(ShortOfHearing, Motion::people(), &square(4000.0), &mut draws);
+    let at = |place| Measurement::new(place, 500.0, 100.0).expect("a measurement");
+    for _ in 0..20 {
+        tracker.measure(&at([600.0; 2]), &mut draws)?;
+    }
+    assert!(distance(tracker.estimate().place, [600.0; 2]) < 300.0);
+    let refused = (0..20).filter(|_| tracker.measure(&at([3300.0; 2]), &mut draws).is_err());
+    assert!((2..19).contains(&refused.count()));
+    assert!(distance(tracker.estimate().place, [3300.0; 2]) < 300.0);
+    Ok(())
+}
+
 /// Mean error over the second half of a walk round a circle; the user jumps to its other side at `jump`.
 fn follow<T: Scalar>(jump: Option<u32>, seed: u64) -> Result<f64, Error> {
     const STEPS: u32 = 240;
