@@ -142,12 +142,13 @@ fn what_is_wrong_is_one_sentence() {
     let desk = Desk::new();
     let new = desk.named("new.frames");
     let old = desk.file("old.frames", "precious");
-    let wrong: [(&[&str], &str); 12] = [
+    let wrong: [(&[&str], &str); 13] = [
         (&["--udp", "127.0.0.1", "--record", &new], "--udp"),
         (&["--udp", "192.0.2.1:5775", "--record", &new], "--udp"),
         (&["--serial", "/no/such/device", "--record", &new], "/no/such/device"),
         (&["--baud", "9600"], "--serial"),
         (&["--file", "/no/such/file"], "/no/such/file"),
+        (&["--headless", "--file", &old], "found no frame"),
         (&["--file", &old, "--record", &new], "--record"),
         (&["--file", &old, "--udp", "127.0.0.1:0"], "--udp"),
         (&["--record", &old, "--udp", "127.0.0.1:0"], "overwritten"),

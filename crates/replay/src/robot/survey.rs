@@ -50,11 +50,16 @@ pub enum Unplaced {
     /// These anchors have fewer ranges to others than there are dimensions, or are in one line or plane with those.
     #[error("the ranges do not determine where these anchors are, counted from 0: {0:?}")]
     Loose(Vec<usize>),
-    /// All anchors stand in one plane, or so nearly that the ranges do not tell on which side of it each is.
+    /// All anchors stand in one plane (in two dimensions: one line), or so nearly that the ranges do not tell how far off
+    /// it, and on which side, each is.
     #[error(
-        "the anchors stand in one plane, or nearly: their ranges do not tell three coordinates"
+        "the anchors stand in one {}, or nearly: their ranges do not tell {dimensions} coordinates",
+        if *.dimensions > 2 { "plane" } else { "line" }
     )]
-    Flat,
+    Flat {
+        /// The number of dimensions.
+        dimensions: usize,
+    },
 }
 
 /// The deviation beyond which a pair does not fit, in standard deviations.
@@ -114,12 +119,16 @@ pub fn survey(anchors: usize, pairs: &[Pair], dimensions: usize) -> Result<Surve
     }
     let Some(best) = shapes.first() else { return Err(Unplaced::Loose((0..anchors).collect())) };
     let ambiguous = ambiguous(&network, best, &shapes);
+    let flat = Unplaced::Flat { dimensions };
+    if network.fits_flattened(best) {
+        return Err(flat);
+    }
     let best = best.turned(dimensions);
-    let sigmas = network.sigmas(&best).ok_or(Unplaced::Flat)?;
+    let Some(sigmas) = network.sigmas(&best) else { return Err(flat) };
     let vague: Vec<_> =
         (0..anchors).filter(|&i| sigmas[i].iter().any(|sigma| *sigma > LOOSE)).collect();
     if vague.len() == anchors {
-        return Err(Unplaced::Flat);
+        return Err(flat);
     }
     if !vague.is_empty() {
         return Err(Unplaced::Loose(vague));
@@ -144,6 +153,9 @@ fn ambiguous(network: &Network<'_>, best: &Shape, shapes: &[Shape]) -> Vec<usize
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand_distr::{Distribution, StandardNormal};
+    use rand_xoshiro::Xoshiro256PlusPlus;
+    use rand_xoshiro::rand_core::SeedableRng;
 
     const HALL: [[f64; 3]; 6] = [
         [0.0, 0.0, 0.3],
@@ -214,18 +226,32 @@ mod tests {
                 .zip(&found.sigmas)
                 .all(|(at, sigma)| at[2] == 0.0 && sigma[2] == 0.0)
         );
-        match survey(6, &measured(&flat), 3) {
-            Err(Unplaced::Flat | Unplaced::Loose(_)) => {}
-            // Otherwise the heights must be reported as unknown.
-            Ok(found) => assert!(
-                found
-                    .sigmas
-                    .iter()
-                    .zip(&found.places)
-                    .all(|(sigma, at)| sigma[2] > 0.3 * at[2].abs()),
-                "{found:?}"
-            ),
-            Err(error) => panic!("{error}"),
+        assert_eq!(survey(6, &measured(&flat), 3), Err(Unplaced::Flat { dimensions: 3 }));
+    }
+
+    /// What noise bends a line or a plane by is not a place: its linearised deviations would be too small.
+    #[test]
+    fn anchors_in_a_line_or_plane_are_refused_whatever_the_noise() {
+        let line: Vec<_> = (0..4).map(|k| [3.0 * f64::from(k), 0.0, 0.0]).collect();
+        let plane: Vec<_> = HALL.iter().map(|[x, y, _]| [*x, *y, 2.0]).collect();
+        let bent = [[0.0; 3], [3.0, 0.0, 0.0], [6.0, 1.5, 0.0], [9.0, 0.0, 0.0]];
+        for seed in 0..20 {
+            let noisy = |places: &[[f64; 3]]| {
+                let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+                let mut pairs = measured(places);
+                for pair in &mut pairs {
+                    let noise: f64 = StandardNormal.sample(&mut random);
+                    pair.metres += 0.02 * noise;
+                }
+                pairs
+            };
+            let refused = [(&line, 2), (&plane, 3)].map(|(places, dimensions)| {
+                survey(places.len(), &noisy(places), dimensions).is_err()
+            });
+            assert_eq!(refused, [true; 2], "{seed}");
+            let found = survey(4, &noisy(&bent), 2).expect("a bend of 1.5 m shows");
+            assert!(worst(&found, &bent) < 0.3, "{seed}");
+            survey(6, &noisy(&HALL), 3).expect("a hall");
         }
     }
 

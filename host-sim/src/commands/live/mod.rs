@@ -85,6 +85,13 @@ pub(super) fn run(matches: &ArgMatches) -> Result<(), Error> {
     for warning in &report.warnings {
         output::warn(&format!("warning: {warning}"));
     }
+    if let Some(path) = &stream.file
+        && report.counts.received == 0
+        && report.counts.taken == 0
+    {
+        let problem = "expected a recorded stream, found no frame".to_owned();
+        return Err(Error::File { path: path.clone(), problem });
+    }
     output::show(&report, stream.json)?;
     // A recording that is played back ends before anyone can look at the page.
     while page.is_some() && stream.file.is_some() && !ended.is_stopped() {

@@ -76,6 +76,7 @@ impl Options {
                 problem: "expected ranges from places that are known, found none".to_owned(),
             });
         }
+        output::warn_of(&self.log, &doubts(&calibrations));
         calibration::write(&self.out, &calibrations)?;
         Ok(calibrations)
     }
@@ -113,6 +114,28 @@ impl Options {
     }
 }
 
+/// The bias and the standard deviation of ranges (m) beyond which a calibration is doubtful: those of radios in sight of
+/// each other are below 0.5 and 0.15 m.
+const LARGEST_BIAS_M: f64 = 2.0;
+const LARGEST_SIGMA_M: f64 = 0.3;
+
+/// A warning about anchors whose calibration may do more harm than good.
+fn doubts(calibrations: &[AnchorCalibration]) -> Vec<String> {
+    let is_doubtful = |anchor: &&AnchorCalibration| {
+        anchor.bias_m.abs() > LARGEST_BIAS_M || anchor.sigma_m > LARGEST_SIGMA_M
+    };
+    let names: Vec<_> =
+        calibrations.iter().filter(is_doubtful).map(|it| it.anchor.as_str()).collect();
+    if names.is_empty() {
+        return Vec::new();
+    }
+    let names = names.join(", ");
+    vec![format!(
+        "ranges of {names} are off by more than {LARGEST_BIAS_M} m or scatter by more than {LARGEST_SIGMA_M} m: links through walls, \
+         anchors in each other's place, another unit, or clocks that differ; their calibration may do more harm than good"
+    )]
+}
+
 /// Writes the calibration from a folder whose recording has a known truth.
 pub(super) fn from_truth(folder: &Path, to: &Path) -> Result<(), Error> {
     let [anchors, log, truth] =
@@ -148,5 +171,23 @@ impl fmt::Display for Report {
             ]);
         }
         table.fmt(f)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn anchors_that_no_radio_measures_so_are_named() {
+        let of = |anchor: &str, bias_m, sigma_m| AnchorCalibration {
+            anchor: anchor.to_owned(),
+            bias_m,
+            sigma_m,
+            ranges: 100,
+        };
+        assert!(doubts(&[of("A0", 0.4, 0.1), of("A1", -0.2, 0.29)]).is_empty());
+        let told = doubts(&[of("A0", -2.1, 0.1), of("A1", 0.1, 0.1), of("A2", 0.1, 0.31)]);
+        assert!(told.len() == 1 && told[0].starts_with("ranges of A0, A2 are off"), "{told:?}");
     }
 }

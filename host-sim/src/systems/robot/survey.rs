@@ -122,7 +122,9 @@ fn named(error: &survey::Unplaced, names: &[String]) -> String {
                 names.join(", ")
             )
         }
-        survey::Unplaced::Flat => format!("{error}; --dim 2 finds the other two"),
+        survey::Unplaced::Flat { dimensions: 3 } => {
+            format!("{error}; --dim 2 finds the other two")
+        }
         other => other.to_string(),
     }
 }

@@ -1,11 +1,11 @@
 //! Shapes of a network of anchors, and their fit.
 
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use rand_distr::{Distribution, StandardUniform};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
 
-use super::{DIFFERENT, Pair};
+use super::{DIFFERENT, OUTLIER, Pair};
 
 /// The number of starts that are tried: usually there are as many local minima as there are anchors off the plane of
 /// the others.
@@ -13,6 +13,8 @@ const STARTS: usize = 60;
 const MOST_STEPS: usize = 200;
 /// The relative change of the cost below which the search ends.
 const SETTLED: f64 = 1e-9;
+/// Standard deviations up to which a better fit is chance.
+const LIKELY: f64 = 4.0;
 /// The share of the largest eigenvalue of the normal equations below which nothing is known in a direction.
 const NEGLIGIBLE: f64 = 1e-10;
 
@@ -130,6 +132,39 @@ impl Network<'_> {
         let along: f64 = (0..d).map(|axis| normal[axis] * (own[axis] - centre[axis])).sum();
         (0..d).for_each(|axis| own[axis] -= 2.0 * along * normal[axis]);
         Some(mirrored)
+    }
+
+    /// Whether the shape fits no better than noise would make it if all anchors stood in one plane (in two dimensions:
+    /// one line). The distance from it, of which ranges depend by its square, has no linear deviation then.
+    pub(super) fn fits_flattened(&self, shape: &Shape) -> bool {
+        let Some(d) = self.dimensions.checked_sub(1).filter(|d| *d > 0) else { return false };
+        let count = self.anchors as f64;
+        let centre = (0..self.anchors).map(|i| shape.place(i)).sum::<Vector3<f64>>() / count;
+        let offsets = (0..self.anchors).map(|i| shape.place(i) - centre);
+        let scatter = offsets.clone().map(|it| it * it.transpose()).sum::<Matrix3<f64>>();
+        let eigen = scatter.symmetric_eigen();
+        let mut axes = [0, 1, 2];
+        axes.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+        let along = |offset: Vector3<f64>| {
+            std::array::from_fn(|k| {
+                if k < d { eigen.eigenvectors.column(axes[k]).dot(&offset) } else { 0.0 }
+            })
+        };
+        let flat = Network { dimensions: d, ..*self };
+        let flat = flat.settled(&Shape { places: offsets.map(along).collect(), ..*shape });
+        // The difference has a χ² distribution of as many degrees of freedom as there are distances from the plane, if
+        // all are zero.
+        let free = (self.anchors - self.dimensions) as f64;
+        self.squares(&flat) - self.squares(shape) < free + LIKELY * (2.0 * free).sqrt()
+    }
+
+    /// The sum of the squares of residuals, in standard deviations, of which none counts for more than an outlier.
+    fn squares(&self, shape: &Shape) -> f64 {
+        let square = |pair: &Pair| {
+            let residual = (pair.metres - shape.distance(pair.anchors)) / self.sigma;
+            (residual * residual).min(OUTLIER * OUTLIER)
+        };
+        self.pairs.iter().map(square).sum()
     }
 
     /// The shape moved to the best fit nearby, by Levenberg–Marquardt steps with weights renewed in each.

@@ -26,10 +26,11 @@ impl Origin {
         [normal * cosine, meridian].map(f64::to_radians)
     }
 
-    /// Converts a position to the plane; the first one becomes the origin. `None` if it is not a valid position, or
-    /// near a pole.
+    /// Converts a position to the plane; the first one becomes the origin. `None` if it is not a valid position, near a
+    /// pole, or where both angles are zero, which receivers write before they have a position.
     pub fn place(origin: &mut Option<Self>, latitude: f64, longitude: f64) -> Option<[f64; 2]> {
-        let is_place = latitude.abs() <= 89.0 && longitude.abs() <= 360.0;
+        let is_fixed = latitude != 0.0 || longitude != 0.0;
+        let is_place = is_fixed && latitude.abs() <= 89.0 && longitude.abs() <= 360.0;
         is_place
             .then(|| origin.get_or_insert(Self { latitude, longitude }).plane(latitude, longitude))
     }
@@ -99,8 +100,9 @@ impl Places {
             Self::Plane([x, y]) => Ok([row.coordinate("x", x)?, row.coordinate("y", y)?]),
             Self::Earth([lat, lon]) => {
                 let (latitude, longitude) = (row.number("lat", lat)?, row.number("lon", lon)?);
-                Origin::place(origin, latitude, longitude)
-                    .ok_or_else(|| row.line.error("expected latitude and longitude in degrees"))
+                Origin::place(origin, latitude, longitude).ok_or_else(|| {
+                    row.line.error("expected latitude and longitude of a fix, in degrees")
+                })
             }
         }
     }
@@ -109,6 +111,15 @@ impl Places {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_a_receiver_writes_without_a_position_is_none() {
+        let mut origin = None;
+        assert_eq!(Origin::place(&mut origin, 0.0, 0.0), None);
+        assert_eq!(Origin::place(&mut origin, 90.0, 10.0), None);
+        assert_eq!(origin, None);
+        assert_eq!(Origin::place(&mut origin, 0.0, 29.0), Some([0.0; 2]));
+    }
 
     #[test]
     fn a_plane_touches_the_earth() {
