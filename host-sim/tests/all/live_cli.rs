@@ -138,17 +138,26 @@ fn a_serial_port_is_read_until_it_is_unplugged() {
 }
 
 #[test]
+fn a_file_without_a_frame_is_refused() {
+    let desk = Desk::new();
+    let walk = desk.file("walk.csv", "t,x\n0,1\n");
+    let output = host_sim(&["live", "--headless", "--json", "--file", &walk]);
+    assert!(output.status.code() == Some(2) && output.stdout.is_empty());
+    let sentence = text(&output.stderr).trim_end();
+    assert!(sentence.ends_with("expected a recorded stream, found no frame"), "{sentence}");
+}
+
+#[test]
 fn what_is_wrong_is_one_sentence() {
     let desk = Desk::new();
     let new = desk.named("new.frames");
     let old = desk.file("old.frames", "precious");
-    let wrong: [(&[&str], &str); 13] = [
+    let wrong: [(&[&str], &str); 12] = [
         (&["--udp", "127.0.0.1", "--record", &new], "--udp"),
         (&["--udp", "192.0.2.1:5775", "--record", &new], "--udp"),
         (&["--serial", "/no/such/device", "--record", &new], "/no/such/device"),
         (&["--baud", "9600"], "--serial"),
         (&["--file", "/no/such/file"], "/no/such/file"),
-        (&["--headless", "--file", &old], "found no frame"),
         (&["--file", &old, "--record", &new], "--record"),
         (&["--file", &old, "--udp", "127.0.0.1:0"], "--udp"),
         (&["--record", &old, "--udp", "127.0.0.1:0"], "overwritten"),
