@@ -17,5 +17,5 @@ layout! {
     [T: Scalar, N: Layout, D: Layout] for Tracker<T, N, D>
         as N::NAME, 6, T, [N::VERSION, Name::new(D::NAME).code(), D::VERSION];
     [T: Scalar] for PathUncertainty<T> as "pedestrian/path", 3, T, [];
-    [T: Scalar] for MagneticHeading<T> as "pedestrian/north", 1, T, [];
+    [T: Scalar] for MagneticHeading<T> as "pedestrian/north", 2, T, [];
 }
