@@ -99,21 +99,22 @@ impl<T: Scalar, const P: usize, const L: usize> FlightObserver<T, P, L> {
             return Err(Error::NotFinite);
         }
         let (mut next, mut gates) = (self.observer, self.gates);
-        let (mut bridged, mut begins) = (None, true);
+        let mut bridged = None;
+        let is_usual = self.before.is_some_and(|(before_us, _)| {
+            sample.time_us.checked_sub(before_us) == Some(self.usual_us)
+        });
         if let Some((before_us, input)) = &self.before {
-            if sample.time_us.checked_sub(*before_us) == Some(self.usual_us) {
+            if is_usual {
                 next.predict(&input.map(T::from_f64))?;
-                begins = false;
             } else {
                 bridged = self.transitions.between(*before_us, sample.time_us, transition)?;
             }
             if let Some((_, step)) = &bridged {
                 let there = step.a * next.estimate().map(T::to_f64) + step.b * input;
                 next.reset(&finite(&there)?)?;
-                begins = false;
             }
         }
-        if begins {
+        if !is_usual && bridged.is_none() {
             next.reset(&finite(&self.measured_states(&sample.measured))?)?;
             gates = [InnovationGate::default(); P];
         }

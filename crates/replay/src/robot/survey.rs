@@ -118,11 +118,11 @@ pub fn survey(anchors: usize, pairs: &[Pair], dimensions: usize) -> Result<Surve
         shapes.sort_by(|one, other| one.cost.total_cmp(&other.cost));
     }
     let Some(best) = shapes.first() else { return Err(Unplaced::Loose((0..anchors).collect())) };
-    let ambiguous = ambiguous(&network, best, &shapes);
     let flat = Unplaced::Flat { dimensions };
     if network.fits_flattened(best) {
         return Err(flat);
     }
+    let ambiguous = ambiguous(&network, best, &shapes);
     let best = best.turned(dimensions);
     let Some(sigmas) = network.sigmas(&best) else { return Err(flat) };
     let vague: Vec<_> =

@@ -1,6 +1,6 @@
 //! Shapes of a network of anchors, and their fit.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Vector3};
 use rand_distr::{Distribution, StandardUniform};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
@@ -69,6 +69,20 @@ impl Shape {
     }
 }
 
+/// A plane, or a line in two dimensions.
+struct Plane {
+    centre: Vector3<f64>,
+    normal: Vector3<f64>,
+}
+
+impl Plane {
+    /// The place moved towards the plane: by once its distance into it, by twice to the other side.
+    fn moved(&self, place: [f64; 3], times: f64) -> [f64; 3] {
+        let place = Vector3::from(place);
+        (place - self.normal * (times * self.normal.dot(&(place - self.centre)))).into()
+    }
+}
+
 impl Network<'_> {
     /// The number of coordinates without those of the frame.
     pub(super) fn unknowns(&self) -> usize {
@@ -111,6 +125,21 @@ impl Network<'_> {
         Shape { places: (0..self.anchors).map(|_| place()).collect(), cost: f64::INFINITY }
     }
 
+    /// The plane (in two dimensions: the line) along which these places lie.
+    fn plane_along(&self, places: &[Vector3<f64>]) -> Plane {
+        let centre = places.iter().sum::<Vector3<f64>>() / places.len() as f64;
+        let d = self.dimensions;
+        let scatter = places.iter().fold(DMatrix::zeros(d, d), |sum, place| {
+            let offset = DVector::from_fn(d, |axis, _| place[axis] - centre[axis]);
+            sum + &offset * offset.transpose()
+        });
+        let eigen = scatter.symmetric_eigen();
+        let least = eigen.eigenvectors.column(eigen.eigenvalues.imin());
+        let mut normal = Vector3::zeros();
+        normal.iter_mut().zip(least.iter()).for_each(|(to, from)| *to = *from);
+        Plane { centre, normal }
+    }
+
     /// The shape with one anchor mirrored at the plane, or line, along which the anchors lie to which it has ranges.
     fn mirrored(&self, shape: &Shape, anchor: usize) -> Option<Shape> {
         let near: Vec<_> = self
@@ -119,39 +148,25 @@ impl Network<'_> {
             .filter(|pair| pair.anchors.contains(&anchor))
             .map(|pair| shape.place(pair.anchors[0] + pair.anchors[1] - anchor))
             .collect();
-        let centre = near.iter().sum::<Vector3<f64>>() / near.len() as f64;
-        let d = self.dimensions;
-        let scatter = near.iter().fold(DMatrix::zeros(d, d), |sum, place| {
-            let offset = DVector::from_fn(d, |axis, _| place[axis] - centre[axis]);
-            sum + &offset * offset.transpose()
-        });
-        let eigen = scatter.symmetric_eigen();
-        let normal = eigen.eigenvectors.column(eigen.eigenvalues.imin());
+        let plane = self.plane_along(&near);
         let mut mirrored = shape.clone();
         let own = mirrored.places.get_mut(anchor)?;
-        let along: f64 = (0..d).map(|axis| normal[axis] * (own[axis] - centre[axis])).sum();
-        (0..d).for_each(|axis| own[axis] -= 2.0 * along * normal[axis]);
+        *own = plane.moved(*own, 2.0);
         Some(mirrored)
     }
 
     /// Whether the shape fits no better than noise would make it if all anchors stood in one plane (in two dimensions:
     /// one line). The distance from it, of which ranges depend by its square, has no linear deviation then.
     pub(super) fn fits_flattened(&self, shape: &Shape) -> bool {
-        let Some(d) = self.dimensions.checked_sub(1).filter(|d| *d > 0) else { return false };
-        let count = self.anchors as f64;
-        let centre = (0..self.anchors).map(|i| shape.place(i)).sum::<Vector3<f64>>() / count;
-        let offsets = (0..self.anchors).map(|i| shape.place(i) - centre);
-        let scatter = offsets.clone().map(|it| it * it.transpose()).sum::<Matrix3<f64>>();
-        let eigen = scatter.symmetric_eigen();
-        let mut axes = [0, 1, 2];
-        axes.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
-        let along = |offset: Vector3<f64>| {
-            std::array::from_fn(|k| {
-                if k < d { eigen.eigenvectors.column(axes[k]).dot(&offset) } else { 0.0 }
-            })
-        };
-        let flat = Network { dimensions: d, ..*self };
-        let flat = flat.settled(&Shape { places: offsets.map(along).collect(), ..*shape });
+        if self.dimensions < 2 {
+            return false;
+        }
+        let places: Vec<_> = (0..self.anchors).map(|anchor| shape.place(anchor)).collect();
+        let plane = self.plane_along(&places);
+        let flat = shape.places.iter().map(|place| plane.moved(*place, 1.0)).collect();
+        let dimensions = self.dimensions - 1;
+        let flat = Shape { places: flat, ..*shape }.turned(dimensions);
+        let flat = Network { dimensions, ..*self }.settled(&flat);
         // The difference has a χ² distribution of as many degrees of freedom as there are distances from the plane, if
         // all are zero.
         let free = (self.anchors - self.dimensions) as f64;
