@@ -76,7 +76,7 @@ pub fn read_log<T>(
     columns: impl Fn(&Header<'_>) -> Result<T, Error>,
     row: impl FnMut(&T, &Row<'_>) -> Result<(), Error>,
 ) -> Result<Found, Error> {
-    parse(path, &text::bytes(path)?, log, columns, row)
+    parse(path, &text::unpacked(path)?, log, columns, row)
 }
 
 /// Reads the contents of the file `path` as [`read_log`] does.
@@ -362,15 +362,17 @@ impl Row<'_> {
         Ok(value)
     }
 
-    /// A time in microseconds, from a number, a date with a time, or a time of day.
+    /// A time in microseconds, from a number, a date with a time, or a time of day. A clock that begins anew, at midnight or at the end
+    /// of 32 bits, is continued: to be called for one line after the other.
     ///
     /// # Errors
     /// [`Error::Line`] if the field is not a time, or lies beyond any clock.
     pub fn time_us(&self, column: Column) -> Result<i64, Error> {
-        let seconds = match self.table.moment(self.field(column)) {
-            Some(seconds) => seconds,
-            None if self.second == 1.0 => self.number("t", column)?,
-            None => self.number("t", column)? * self.second,
+        let field = self.field(column);
+        let counted = || Some(self.table.count(field)? * (column.scale * self.second));
+        let Some(seconds) = self.table.moment(field).or_else(counted) else {
+            let found = printable(&self.text(column));
+            return Err(self.line.error(format!("expected a time in column t, found {found}")));
         };
         if seconds.abs() > LATEST_TIME {
             return Err(self.line.error("expected a time in seconds, found one beyond any clock"));

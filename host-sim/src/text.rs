@@ -1,5 +1,6 @@
 //! Text files other than tables, read so that every error names the file and the line; and text for people.
 
+use std::borrow::Cow;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -23,6 +24,15 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
         _ => Err(io::Error::other("it is larger than 1 GiB, which no log of use is")),
     });
     read.map_err(|source| Error::Read { path: path.to_path_buf(), source })
+}
+
+/// Reads the contents of a log, unpacked if they are packed with gzip.
+///
+/// # Errors
+/// Those of [`bytes`]; [`Error::File`] if it cannot be unpacked.
+pub fn unpacked(path: &Path) -> Result<Vec<u8>, Error> {
+    let unpacked = kestirim_import::unpacked(bytes(path)?.into()).map(Cow::into_owned);
+    unpacked.map_err(|error| Error::File { path: path.to_path_buf(), problem: error.to_string() })
 }
 
 /// The first whole lines of a file, at most some tens of kilobytes.

@@ -135,12 +135,19 @@ pub struct Heading<'a> {
     /// The line of the header, from 1.
     pub line: usize,
     names: Vec<String>,
+    /// The units in a line below the header, one for each column, or none at all.
+    units: Vec<Option<String>>,
     options: &'a Options,
 }
 
 impl<'a> Heading<'a> {
     pub(crate) fn new(line: usize, names: Vec<String>, options: &'a Options) -> Self {
-        Self { line, names, options }
+        Self { line, names, units: Vec::new(), options }
+    }
+
+    /// The same header with a line of units below it.
+    pub(crate) fn with_units(self, units: Vec<Option<String>>) -> Self {
+        Self { units, ..self }
     }
 
     /// The column names as they are written in the header.
@@ -160,7 +167,7 @@ impl<'a> Heading<'a> {
         let place = |column: usize, named: Option<Unit>| Place {
             column,
             name: self.names[column].clone(),
-            unit: unit.clone().or(named),
+            unit: unit.clone().or(named).or_else(|| self.unit_below(name, column)),
             is_negative: said.is_some_and(|pick| pick.is_negative),
         };
         match (exact[..].first(), exact.len(), said) {
@@ -191,6 +198,16 @@ impl<'a> Heading<'a> {
             return Err(Error::line(self.line, problem));
         }
         Ok(Some(place(column, named)))
+    }
+
+    /// The unit of the wanted column in the line of units.
+    fn unit_below(&self, wanted: &str, column: usize) -> Option<Unit> {
+        let known = KNOWN.iter().find(|known| known.name == wanted);
+        let quantity = match known {
+            Some(known) => known.quantity?,
+            None => meaning(wanted)?.quantity,
+        };
+        Unit::read(quantity, self.units.get(column)?.as_deref()?)
     }
 
     /// Whether a column may be the wanted one, and the unit that its name contains.

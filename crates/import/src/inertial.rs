@@ -52,6 +52,7 @@ use order::Rows;
 use units::Units;
 
 use crate::containers::{self, Opened};
+use crate::counter::PERIODS;
 use crate::damage::{Damage, Fault};
 use crate::error::Error;
 use crate::layout::Kind;
@@ -142,7 +143,7 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Inertial, Error> {
     let columns = Columns::find(&table, format, options)?;
     let mut rows = Rows::of(text.as_ref(), &table, &columns, &mut damage);
     damage.accept(total, options.strict)?;
-    rows.put_in_order(&periods(&table, &columns), &mut damage)?;
+    rows.put_in_order(periods(&table, &columns), &mut damage)?;
     let doubles = if options.strict { 0 } else { rows.without_doubles(&mut damage) };
     damage.accept(total, options.strict)?;
     packets::refuse_shared_times(&rows.raw)?;
@@ -170,14 +171,12 @@ fn refuse_other_header(table: &Table) -> Result<(), Error> {
     ))
 }
 
-/// The values at which the clock may wrap, in its own unit: a day, or 32 bits.
-fn periods(table: &Table, columns: &Columns) -> Vec<f64> {
-    const DAY: f64 = 86_400.0;
-    const BITS: f64 = 4_294_967_296.0;
+/// What the clock may begin anew at, in its own unit.
+fn periods(table: &Table, columns: &Columns) -> &'static [f64] {
     match columns.time.map(|time| table.columns[time].kind) {
-        Some(Kind::TimeOfDay) => vec![DAY * 1e6],
-        Some(Kind::Number) => vec![DAY, DAY * 1e3, DAY * 1e6, BITS],
-        _ => Vec::new(),
+        Some(Kind::TimeOfDay) => &[86_400e6],
+        Some(Kind::Number) => &PERIODS,
+        _ => &[],
     }
 }
 

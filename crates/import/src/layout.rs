@@ -116,8 +116,11 @@ fn any_names(bytes: &[u8]) -> Vec<String> {
     words.filter(|word| !word.is_empty()).collect()
 }
 
-/// The units of a line that consists of units.
-fn units_line(fields: Vec<String>) -> Option<Vec<Option<String>>> {
+/// The units of a line that consists of units, and of no number: a share has the unit 1.
+pub(crate) fn units_line(fields: Vec<String>) -> Option<Vec<Option<String>>> {
+    if fields.iter().any(|field| fast_float2::parse::<f64, _>(field).is_ok()) {
+        return None;
+    }
     let fields: Vec<_> = fields
         .into_iter()
         .map(|field| field.trim_matches(['[', ']', '(', ')']).to_owned())

@@ -2,6 +2,7 @@
 
 mod clock;
 mod containers;
+mod counter;
 mod damage;
 mod dialect;
 mod error;
@@ -16,6 +17,7 @@ mod named;
 mod names;
 mod number;
 mod options;
+mod packed;
 mod part;
 pub mod ranging;
 mod row;
@@ -32,6 +34,7 @@ pub use heading::{Heading, Place};
 pub use layout::Kind;
 pub use named::NamedTable;
 pub use options::{Columns, Options, TimeUnit, Units};
+pub use packed::unpacked;
 pub use part::Part;
 pub use table::{Column, Table};
 pub use text::{Line, Text};

@@ -1,13 +1,15 @@
 //! Tables whose columns are found by name: logs of ranges, levels and wheels, and lists of places.
 //!
 //! The first line that holds the wanted names is the header, whatever separates them; the names decide, never the
-//! separator.
+//! separator. Below it may stand a line of units.
 
 use std::borrow::Cow;
 use std::cell::Cell;
 
+use crate::counter::Counter;
 use crate::dialect::{Dialect, Separator};
 use crate::heading::Heading;
+use crate::layout::units_line;
 use crate::moment::{self, Days};
 use crate::options::Options;
 use crate::text::{Text, letters};
@@ -21,11 +23,14 @@ const SAMPLE: usize = 400;
 #[derive(Debug)]
 pub struct NamedTable<'a> {
     text: &'a Text<'a>,
+    /// The lines down to the header, or to a line of units below it.
+    above: usize,
     /// The header.
     pub heading: Heading<'a>,
     /// The dialect of the table.
     pub dialect: Dialect,
     days: Cell<Days>,
+    counter: Cell<Counter>,
 }
 
 impl<'a> NamedTable<'a> {
@@ -39,20 +44,35 @@ impl<'a> NamedTable<'a> {
         const SEPARATORS: [Separator; 4] =
             [Separator::Comma, Separator::Semicolon, Separator::Tab, Separator::Blanks];
         let mut first = None;
-        for line in text.lines().take(ABOVE) {
+        let mut lines = text.lines().take(ABOVE).peekable();
+        while let Some(line) = lines.next() {
+            let below = lines.peek();
             let headings = SEPARATORS.into_iter().map(|separator| {
-                let fields = Dialect::new(separator, false).fields(bare(line.bytes));
-                let names = fields.iter().map(|field| letters(field)).collect();
-                (separator, Heading::new(line.number, names, options))
+                let dialect = Dialect::new(separator, false);
+                let fields = |line: &[u8]| -> Vec<_> {
+                    dialect.fields(bare(line)).iter().map(|field| letters(field)).collect()
+                };
+                let heading = Heading::new(line.number, fields(line.bytes), options);
+                let units = below.and_then(|line| Some((line, units_line(fields(line.bytes))?)));
+                match units {
+                    Some((below, units)) => (dialect, below.number, heading.with_units(units)),
+                    None => (dialect, line.number, heading),
+                }
             });
             let mut best: Option<(usize, Self, T)> = None;
             let mut worst: Option<(usize, E)> = None;
-            for (separator, heading) in headings {
+            for (dialect, above, heading) in headings {
                 let names = heading.names().len();
                 match columns(&heading) {
                     Ok(found) => {
-                        let dialect = Dialect::new(separator, false);
-                        let table = Self { text, heading, dialect, days: Cell::default() };
+                        let table = Self {
+                            text,
+                            above,
+                            heading,
+                            dialect,
+                            days: Cell::default(),
+                            counter: Cell::default(),
+                        };
                         let fits = table.fitting_rows();
                         if best.as_ref().is_none_or(|(most, ..)| fits > *most) {
                             best = Some((fits, table, found));
@@ -74,9 +94,9 @@ impl<'a> NamedTable<'a> {
         first.map(Err)
     }
 
-    /// The number and fields of each line below the header that is not a comment.
+    /// The number and fields of each line below the header, and below a line of units, that is not a comment.
     pub fn rows(&self) -> impl Iterator<Item = (usize, Vec<Cow<'_, [u8]>>)> {
-        let below = self.text.lines().filter(|line| line.number > self.heading.line);
+        let below = self.text.lines().filter(|line| line.number > self.above);
         let rows = below.filter(|line| !self.dialect.is_comment(line.bytes));
         rows.map(|line| (line.number, self.fields(line.bytes)))
     }
@@ -135,6 +155,16 @@ impl<'a> NamedTable<'a> {
         self.days.set(days);
         Some(seconds)
     }
+
+    /// The finite number in a field of a clock that counts, continued where the clock begins anew, at midnight or at the end of 32
+    /// bits: to be called for one row after the other.
+    pub fn count(&self, field: &[u8]) -> Option<f64> {
+        let number = self.number(field).filter(|number| number.is_finite())?;
+        let mut counter = self.counter.get();
+        let continued = counter.continued(number);
+        self.counter.set(counter);
+        Some(continued)
+    }
 }
 
 /// A line without leading comment marks: a header may be a comment.
@@ -171,6 +201,16 @@ mod tests {
             assert_eq!((table.number(&t), table.number(&range)), (Some(0.5), Some(2.5)));
             assert_eq!(&*anchor, b"A 1");
         }
+        let text = Text::new(b"t,anchor,range\n[ms],-,[ft]\n0.5,1,2\n").unwrap();
+        let options = Options::default();
+        let found = NamedTable::find(&text, &options, |heading| heading.require(["t", "range"]));
+        let (table, places) = found.unwrap().unwrap();
+        assert_eq!(places.map(|place| place.scale()), [1e-3, 0.3048]);
+        assert_eq!(table.rows().map(|(line, _)| line).collect::<Vec<_>>(), [3]);
+        // Numbers are a row, though a share is written in parts of 1.
+        let text = Text::new(b"t,x,y\n1,1,1\n").unwrap();
+        let table = NamedTable::find(&text, &options, |heading| heading.require(["t", "x"]));
+        assert_eq!(table.unwrap().unwrap().0.rows().count(), 1);
         let text = Text::new(b"t,anchor\n1,2\n").unwrap();
         let options = Options::default();
         let error = NamedTable::find(&text, &options, |heading| heading.require(["t", "range"]));

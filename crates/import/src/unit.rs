@@ -215,12 +215,21 @@ fn simplified(text: &str) -> String {
 
 /// Whether a word is a unit of any sensor that a log may hold.
 pub(crate) fn is_known(text: &str) -> bool {
-    const OTHERS: [&str; 20] = [
-        "m", "ut", "nt", "mgauss", "gauss", "ga", "degc", "c", "k", "pa", "hpa", "kpa", "v", "mv",
-        "deg", "rad", "%", "hz", "lsb", "m/s",
+    const OTHERS: [&str; 16] = [
+        "ut", "nt", "mgauss", "gauss", "ga", "degc", "c", "k", "pa", "hpa", "kpa", "v", "mv", "hz",
+        "lsb", "%",
     ];
-    let all = [Quantity::Acceleration, Quantity::Rate, Quantity::Time];
-    all.into_iter().any(|quantity| Unit::read(quantity, text).is_some())
+    const ALL: [Quantity; 8] = [
+        Quantity::Acceleration,
+        Quantity::Rate,
+        Quantity::Time,
+        Quantity::Length,
+        Quantity::Speed,
+        Quantity::Level,
+        Quantity::Angle,
+        Quantity::Inclination,
+    ];
+    ALL.into_iter().any(|quantity| Unit::read(quantity, text).is_some())
         || OTHERS.contains(&simplified(text).as_str())
 }
 

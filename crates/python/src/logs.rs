@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use kestirim_import::inertial::{Conclusion, read};
-use kestirim_import::{Columns, Format, Options, Units};
+use kestirim_import::{Columns, Format, Options, Units, unpacked};
 use kestirim_replay::pedestrian::check;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -35,6 +35,7 @@ pub(crate) fn read_imu<'py>(
         let shown = path.display();
         let unread = |error: &dyn std::fmt::Display| refused(format!("{shown}: {error}"));
         let bytes = std::fs::read(&path).map_err(|error| unread(&error))?;
+        let bytes = unpacked(bytes.into()).map_err(|error| unread(&error))?;
         let log = read(&bytes, &options).map_err(|error| unread(&error))?;
         let faults = sentences(&check(&log.samples));
         PyResult::Ok((log, faults))

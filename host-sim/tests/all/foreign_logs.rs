@@ -59,6 +59,24 @@ fn ranges_of_any_program_give_the_same_path() {
         ("blanks.txt", format!("# of a tag\n{}", rewritten(&table, " ", ".")), 0.1),
         ("header.csv", table.replace("t,anchor,range", "Time (s),Anchor ID,Distance [m]"), 0.1),
         (
+            "units.csv",
+            "t,anchor,range\ns,-,mm\n".to_owned()
+                + &lines(rows(&room.log), |(t, anchor, range)| {
+                    format!("{t},A{anchor},{}", mm(range))
+                }),
+            1.0,
+        ),
+        (
+            "32bits.csv",
+            "time_us,anchor,range\n".to_owned()
+                + &lines(rows(&room.log), |(t, anchor, range)| {
+                    // The counter ends after 3 s.
+                    let time = (mm(t) as u32).wrapping_sub(3000).wrapping_mul(1000);
+                    format!("{time},A{anchor},{range}")
+                }),
+            0.1,
+        ),
+        (
             "ms.csv",
             "anchor,t,range_mm\n".to_owned()
                 + &lines(rows(&room.log), |(t, anchor, range)| {

@@ -360,11 +360,7 @@ fn broken_files_are_refused_with_file_and_line() {
         ("a.csv", "", "empty file"),
         ("b.csv", "t,anchor,range\n", "only a header"),
         ("c.csv", "t,anchor\n0,A0\n", "line 1: expected a header with a column range"),
-        (
-            "d.csv",
-            "t,anchor,range\n0,A0,1\nx,A0,1\n",
-            "line 3: expected a finite number in column t",
-        ),
+        ("d.csv", "t,anchor,range\n0,A0,1\nx,A0,1\n", "line 3: expected a time in column t"),
         ("e.csv", "t,anchor,range\n0,A0,one\n", "line 2: expected a range or nothing"),
         ("f.csv", "t,anchor,range\n0,A0\n", "line 2: expected 3 fields"),
         ("g.csv", "t,anchor,range\n1e99,A0,1\n", "beyond any clock"),

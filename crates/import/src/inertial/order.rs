@@ -2,6 +2,7 @@
 //! their counter are continued, and a recording that restarts is refused.
 
 use super::raw::Raw;
+use crate::counter::period;
 use crate::damage::{Damage, Fault};
 use crate::error::{Complaint, Error};
 use crate::part::Part;
@@ -12,8 +13,6 @@ const ACCIDENTS: usize = 3;
 /// The number of consecutive lines at the end of a log, all earlier than the latest time, that are taken for a
 /// restarted recording.
 const RESTART: usize = 4;
-/// How near to its ends a clock must be where it wraps, as a share of its period.
-const NEAR: f64 = 1e-3;
 
 /// Samples with their lines and the indices of their rows.
 #[derive(Debug, Default)]
@@ -131,13 +130,6 @@ impl Rows {
         self.truncate(kept);
         0
     }
-}
-
-/// The period of a clock that wrapped between `last` and `time`.
-fn period(periods: &[f64], last: f64, time: f64) -> Option<f64> {
-    periods.iter().copied().find(|period| {
-        (0.0..=period * NEAR).contains(&time) && (0.0..=period * NEAR).contains(&(period - last))
-    })
 }
 
 fn anew(part: Part, line: usize) -> Error {

@@ -2,6 +2,7 @@
 
 use super::{Found, USUAL_STEP, keep_one_tag};
 use crate::clock::unit_of_range_times;
+use crate::counter::Counter;
 use crate::damage::{Damage, Fault};
 use crate::error::{Error, quoted};
 use crate::moment::{self, Days, Moment};
@@ -96,10 +97,10 @@ enum Said {
 }
 
 impl Said {
-    fn seconds(self, days: &mut Days) -> f64 {
+    fn seconds(self, days: &mut Days, counter: &mut Counter) -> f64 {
         match self {
             Self::Moment(moment) => days.seconds(moment),
-            Self::Number(number) => number,
+            Self::Number(number) => counter.continued(number),
         }
     }
 }
@@ -124,8 +125,9 @@ fn times(
     }
     let said: Option<Vec<Said>> = messages.iter().map(|(said, _)| *said).collect();
     if let Some(said) = said {
-        let mut days = Days::default();
-        let values: Vec<_> = said.iter().map(|said| said.seconds(&mut days)).collect();
+        let (mut days, mut counter) = (Days::default(), Counter::default());
+        let values: Vec<_> =
+            said.iter().map(|said| said.seconds(&mut days, &mut counter)).collect();
         if said.iter().all(|it| matches!(it, Said::Moment(_))) {
             let times = values.into_iter().map(microseconds).collect();
             return Ok((times, "as dates or times of day: from the data".to_owned()));

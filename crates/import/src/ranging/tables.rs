@@ -54,7 +54,7 @@ pub(super) fn read(
         let field = fields.get(time.column).map(AsRef::as_ref).unwrap_or_default();
         let moment = table.moment(field);
         are_moments |= moment.is_some();
-        let seconds = moment.or_else(|| table.number(field).filter(|time| time.is_finite()));
+        let seconds = moment.or_else(|| table.count(field));
         let is_whole = fields.len() == table.heading.names().len();
         let said = seconds.filter(|_| is_whole).zip(said(&table, &form, &fields));
         let Some((seconds, said)) = said else {

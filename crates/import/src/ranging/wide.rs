@@ -56,7 +56,7 @@ pub(super) fn read(
         let field = fields.get(time.column).map(AsRef::as_ref).unwrap_or_default();
         let moment = table.moment(field);
         are_moments |= moment.is_some();
-        let seconds = moment.or_else(|| table.number(field).filter(|time| time.is_finite()));
+        let seconds = moment.or_else(|| table.count(field));
         let (true, Some(seconds)) = (fields.len() == table.heading.names().len(), seconds) else {
             damage.add(Fault::Torn, line, || {
                 let (expected, found) = (table.heading.names().len(), fields.len());

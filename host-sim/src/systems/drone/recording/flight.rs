@@ -38,7 +38,7 @@ pub struct Heard {
 }
 
 /// The usual range of the time from stop to stop (s).
-const USUAL_STEP_S: [f64; 2] = [2e-2, 60.0];
+const USUAL_STEP_S: [f64; 2] = [2e-3, 60.0];
 /// Reads columns t,x,y,h, or t,lat,lon,h, and `path_loss_db` or `rssi_db`; or levels with positions in a ROS 1 bag or
 /// MCAP. If a column user names several transmitters, `--topic` selects one; otherwise all are read. The drone's
 /// heading (degrees clockwise from y, north) is read if there is a column for it.
@@ -46,7 +46,7 @@ const USUAL_STEP_S: [f64; 2] = [2e-2, 60.0];
 /// # Errors
 /// An error that names the file, the line, and what was expected there.
 pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
-    let bytes = text::bytes(path)?;
+    let bytes = text::unpacked(path)?;
     let levels = levels::read(&bytes, options).map_err(|error| table::refused(path, &error))?;
     if let Some(levels) = levels {
         return Ok(of_levels(levels));

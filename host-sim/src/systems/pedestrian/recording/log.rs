@@ -51,7 +51,7 @@ impl Log {
 /// # Errors
 /// An error that names the file, the line, and what was expected there.
 pub fn read(path: &Path, options: &Options) -> Result<Log, Error> {
-    parse(path, &text::bytes(path)?, options)
+    parse(path, &text::unpacked(path)?, options)
 }
 
 /// Reads the contents of the file `path`.

@@ -77,7 +77,7 @@ pub fn read_moving(
 ) -> Result<(RangeLog, Found), Error> {
     let (mut log, mut labels) = (RangeLog::default(), Labels::default());
     let mut tags = Vec::new();
-    let bytes = text::bytes(path)?;
+    let bytes = text::unpacked(path)?;
     if let Some(found) = of_radio(path, &bytes, anchors, options)? {
         return Ok(found);
     }

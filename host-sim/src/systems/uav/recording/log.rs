@@ -20,7 +20,7 @@ pub(in crate::systems::uav) const LARGEST: f64 = 1e6;
 /// # Errors
 /// An error that names the file, the line, and what was expected there.
 pub fn read(path: &Path, names: &[&str], options: &Options) -> Result<(Log, Found), Error> {
-    let bytes = text::bytes(path)?;
+    let bytes = text::unpacked(path)?;
     let flight = flight::read(&bytes, options).map_err(|error| table::refused(path, &error))?;
     let (outputs, samples, found) = match flight {
         Some(flight) => of_autopilot(path, names, flight)?,
