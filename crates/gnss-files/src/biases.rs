@@ -242,6 +242,7 @@ mod tests {
         let complaint = |file: &str| Biases::parse(&[text(file)]).expect_err(file).to_string();
         assert!(complaint("walk\n").contains("expected biases (Bias-SINEX), found \"walk\""));
         let file = biases();
+        assert!(Biases::parse(&[text(format!("\u{feff}{file}"))]).is_ok(), "a byte order mark");
         assert!(complaint(&file.replace("9.7876", "9.7x76")).contains("line 4: expected a bias"));
         assert!(complaint(&file.replace(" ns ", " cm ")).contains("in ns"));
         assert!(complaint(&file.replace("2021:210", "2021:x10")).contains("an instant"));

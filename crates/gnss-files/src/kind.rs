@@ -10,6 +10,7 @@ use kestirim_gnss_message::ssr;
 
 use crate::earth_rotation::is_earth_rotation;
 use crate::error::{Error, quoted};
+use crate::text::without_mark;
 use crate::{crinex, gzip, streams};
 
 /// How much of a file is read, bytes: enough for the first line, packed or not.
@@ -76,6 +77,7 @@ impl Kind {
 
     /// The kind of unpacked contents, or of their beginning; `None` if they are of no format that this crate knows.
     pub fn of(bytes: &[u8]) -> Option<Self> {
+        let bytes = without_mark(bytes);
         let first = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
         let named = |label: &[u8]| memchr::memmem::find(first, label).is_some();
         if named(b"RINEX VERSION / TYPE") {
@@ -151,9 +153,10 @@ mod tests {
     #[test]
     fn a_file_tells_its_kind_packed_or_not() -> Result<(), Box<dyn std::error::Error>> {
         let orbits = format!("#dP2020  6 25  0  0  0.00000000\n{}", "## 1\n".repeat(100_000));
-        let cases: [(&[u8], Option<Kind>); 4] = [
+        let cases: [(&[u8], Option<Kind>); 5] = [
             (orbits.as_bytes(), Some(Kind::Orbits)),
             (b"%=BIA 1.00 COD\n", Some(Kind::Biases)),
+            (b"\xef\xbb\xbf%=BIA 1.00 COD\n", Some(Kind::Biases)),
             (b"t,x,y\n0,1,2\n", None),
             (b"", None),
         ];

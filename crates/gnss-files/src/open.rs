@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::error::Error;
-use crate::text::Text;
+use crate::text::{Text, without_mark};
 use crate::{crinex, gzip};
 
 impl Text {
@@ -24,7 +24,9 @@ impl Text {
     /// a line of Compact RINEX is damaged.
     pub fn unpack(path: impl AsRef<Path>, bytes: Vec<u8>) -> Result<Self, Error> {
         let path = path.as_ref();
-        let text = Self::new(path, gzip::unpack(path, bytes)?);
+        let mut bytes = gzip::unpack(path, bytes)?;
+        bytes.drain(..bytes.len() - without_mark(&bytes).len());
+        let text = Self::new(path, bytes);
         if crinex::is_compressed(text.bytes()) {
             let bytes = crinex::decompress(&text, gzip::LARGEST)?;
             return Ok(Self::new(path, bytes));

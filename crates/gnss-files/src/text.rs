@@ -16,6 +16,11 @@ pub struct Text {
     bytes: Vec<u8>,
 }
 
+/// A text without the byte order mark that editors put before it.
+pub(crate) fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
 impl Text {
     pub(crate) fn new(path: &Path, bytes: Vec<u8>) -> Self {
         Self { path: path.to_path_buf(), bytes }
