@@ -187,7 +187,9 @@ impl<T: Scalar, N: Navigator<T>> Engine<T, N> {
                     if landing && !is_within(navigator) {
                         self.health.out_of_range();
                     }
-                    if landing && self.health.landing(&navigator.velocity(), self.config.sensor) {
+                    if landing
+                        && self.health.landing(&navigator.velocity(), interval, self.config.sensor)
+                    {
                         self.is_tilted = true;
                         // Something in the swing was missed: a stall, an impact, a turn.
                         self.strides.miss(T::from_f64(Self::UNSEEN), true);

@@ -15,7 +15,7 @@ layout! {
     [T: Scalar] for AngularRateEnergy<T> as "stance/rate", 1, T, [];
     // The layout of a tracker includes those of its navigator and its detector.
     [T: Scalar, N: Layout, D: Layout] for Tracker<T, N, D>
-        as N::NAME, 6, T, [N::VERSION, Name::new(D::NAME).code(), D::VERSION];
+        as N::NAME, 7, T, [N::VERSION, Name::new(D::NAME).code(), D::VERSION];
     [T: Scalar] for PathUncertainty<T> as "pedestrian/path", 3, T, [];
     [T: Scalar] for MagneticHeading<T> as "pedestrian/north", 2, T, [];
 }

@@ -116,7 +116,7 @@ fn landed(
     let warnings = found(|health| {
         before(health);
         for _ in 0..count {
-            lost += u32::from(health.landing(&velocity.into(), SensorClass::Industrial));
+            lost += u32::from(health.landing(&velocity.into(), 0.005, SensorClass::Industrial));
         }
     });
     (warnings, lost)
@@ -158,8 +158,26 @@ fn landings_are_averaged_over_eight() {
         assert!(!implausible(8, wild) && implausible(100, wild), "{wild:?}");
     }
     // 0.5 · (1 − (7/8)ⁿ) > 0.12 from n = 3 on.
-    assert!(!implausible(2, [0.0, 0.0, 1000.0]) && implausible(3, [0.0, 0.0, 1000.0]));
-    assert!(!implausible(100, [0.0, 0.0, 0.119]) && implausible(100, [0.0, 0.0, -0.121]));
+    assert!(!implausible(2, [0.0, 0.0, -1000.0]) && implausible(3, [0.0, 0.0, -1000.0]));
+    assert!(!implausible(100, [0.0, 0.0, -0.119]) && implausible(100, [0.0, 0.0, -0.121]));
+}
+
+#[test]
+fn a_foot_does_not_land_upwards_on_average() {
+    let told = |interval: f64, landings: &[f64]| {
+        let land = |health: &mut Health<f64>| {
+            for &upwards in landings {
+                health.landing(&[0.0, 0.0, upwards].into(), interval, SensorClass::Consumer);
+            }
+        };
+        found(land).landings_implausible
+    };
+    assert!(told(0.005, &[0.036; 100]) && !told(0.005, &[0.034; 100]));
+    assert!(!told(0.005, &[-0.1; 100]) && !told(0.005, &[0.1, -0.05].repeat(50)));
+    // Fewer samples leave more to chance.
+    assert!(told(0.01, &[0.071; 100]) && !told(0.01, &[0.069; 100]));
+    // Two odd landings are no fault: 4 · (1 − (7/8)ⁿ) > 1 from n = 3 on.
+    assert!(!told(0.005, &[0.4; 2]) && told(0.005, &[0.4; 3]));
 }
 
 #[test]
