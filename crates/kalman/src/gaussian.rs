@@ -300,7 +300,12 @@ impl<T: Scalar, const N: usize> Gaussian<T, N> {
         let mut mean = *self.mean.as_array();
         for i in 0..N {
             gain[i] = weights.by_variance(cross[i]);
-            mean[i] += gain[i] * weights.innovation;
+            let step = gain[i] * weights.innovation;
+            // The mean may lead back from the end of fixed point's range.
+            if !(T::IS_FLOAT || step.is_finite()) {
+                return Err(Error::NotFinite);
+            }
+            mean[i] += step;
         }
         // A float's gain that is not finite makes the mean so as well, even where the innovation is zero.
         if !T::all_finite(&mean) {

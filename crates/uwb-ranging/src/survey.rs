@@ -84,10 +84,8 @@ impl<T: Scalar, const A: usize> Distances<T, A> {
                 if !(slant.is_finite() && climb.is_finite()) {
                     return Err(Error::NotFinite);
                 }
-                // (s − h)(s + h) does not leave the range of fixed point.
-                let square = ((slant - climb) * (slant + climb)).max(T::ZERO);
                 if i != j {
-                    distances[i][j] = Some(square.sqrt());
+                    distances[i][j] = Some(leg(slant, climb));
                 }
             }
         }
@@ -230,6 +228,11 @@ fn differ<T: Scalar, const A: usize>(a: &[Place<T>; A], b: &[Place<T>; A]) -> bo
     })
 }
 
+/// √(s² − h²), zero if h is longer: from roots, since squares of more than 45 m leave the range of fixed point.
+fn leg<T: Scalar>(slant: T, other: T) -> T {
+    (slant - other).max(T::ZERO).sqrt() * (slant + other).max(T::ZERO).sqrt()
+}
+
 /// The points in which two circles (centre, radius) intersect or come nearest; `None` if they are concentric.
 fn crossings<T: Scalar>(a: (Place<T>, T), b: (Place<T>, T)) -> Option<[Place<T>; 2]> {
     let apart = b.0 - a.0;
@@ -238,9 +241,8 @@ fn crossings<T: Scalar>(a: (Place<T>, T), b: (Place<T>, T)) -> Option<[Place<T>;
         return None;
     }
     let [x, y] = *(apart * length.recip()).as_array();
-    let along = (length + (a.1 - b.1) * (a.1 + b.1) / length) * T::HALF;
-    let square = (a.1 - along) * (a.1 + along);
-    let height = square.max(T::ZERO).sqrt();
+    let along = (length + (a.1 - b.1) / length * (a.1 + b.1)) * T::HALF;
+    let height = leg(a.1, along.abs());
     let foot = a.0 + Place::from([x * along, y * along]);
     let aside = Place::from([-y * height, x * height]);
     Some([foot + aside, foot - aside])

@@ -59,11 +59,13 @@ impl<T: Scalar, const A: usize, const D: usize> Trilateration<T, A, D> {
         for ((right, anchor), &range) in right.iter_mut().zip(&self.anchors).zip(ranges) {
             *right = right_side::<T, D>((first, first_range), (anchor, range), height);
         }
-        for (coordinate, line) in position.iter_mut().zip(&self.pseudo_inverse) {
-            *coordinate += T::dot(line, &right);
+        if !T::all_finite(&right) {
+            return Err(Error::NotFinite);
         }
-        let finite = position.iter().all(|coordinate| coordinate.is_finite());
-        if finite { Ok(position) } else { Err(Error::NotFinite) }
+        for (coordinate, line) in position.iter_mut().zip(&self.pseudo_inverse) {
+            *coordinate = moved(*coordinate, T::dot(line, &right))?;
+        }
+        Ok(position)
     }
 }
 
@@ -93,32 +95,43 @@ pub fn trilaterate<T: Scalar, const D: usize>(
         let column = factors.solve(&row::<T, D>(&observation.anchor, &first.anchor));
         let other = (&observation.anchor, observation.range);
         let right = right_side::<T, D>((&first.anchor, first.range), other, height);
+        if !right.is_finite() {
+            return Err(Error::NotFinite);
+        }
         sums = core::array::from_fn(|axis| T::mac(sums[axis], column[axis], right));
     }
     let place = first.anchor.as_array();
-    let position = SVector::<T, D>::from_fn(|axis, _| place[axis] + T::finish(sums[axis]));
-    let finite = position.iter().all(|coordinate| coordinate.is_finite());
-    if finite { Ok(position) } else { Err(Error::NotFinite) }
+    let mut position = SVector::<T, D>::zeros();
+    for (axis, coordinate) in position.as_array_mut().iter_mut().enumerate() {
+        *coordinate = moved(place[axis], T::finish(sums[axis]))?;
+    }
+    Ok(position)
 }
 
-/// Half of d₀² − dᵢ² + |aᵢ − a₀|², relative to a₀ and without the contribution of the known height. Computed from
-/// products of differences: squares of tens of metres would leave the range of fixed point.
+/// A coordinate moved by a step, of which neither may be at the end of fixed point's range.
+fn moved<T: Scalar>(coordinate: T, step: T) -> Result<T, Error> {
+    let moved = coordinate + step;
+    if step.is_finite() && moved.is_finite() { Ok(moved) } else { Err(Error::NotFinite) }
+}
+
+/// Half of d₀² − dᵢ² + |aᵢ − a₀|², relative to a₀ and without the contribution of the known height. Not finite where it leaves the
+/// range of fixed point, which its terms may do.
 #[inline(always)]
 fn right_side<T: Scalar, const D: usize>(
     (first, first_range): (&SVector<T, 3>, T),
     (anchor, range): (&SVector<T, 3>, T),
     height: T,
 ) -> T {
-    let mut sum = (first_range - range) * (first_range + range);
+    let mean = first_range * T::HALF + range * T::HALF;
+    let mut sum = T::mac(T::accumulator(), first_range - range, mean);
     for axis in 0..3 {
         let apart = anchor.as_array()[axis] - first.as_array()[axis];
-        sum += apart * apart;
+        sum = T::mac(sum, apart, apart * T::HALF);
         if axis >= D {
-            let tag = height - first.as_array()[axis];
-            sum -= T::TWO * apart * tag;
+            sum = T::mac(sum, apart, first.as_array()[axis] - height);
         }
     }
-    sum * T::HALF
+    T::finish(sum)
 }
 
 /// aᵢ − a₀, half of the paper's row: the factor of two is moved to the right side.

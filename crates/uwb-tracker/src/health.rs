@@ -17,8 +17,8 @@ pub enum State {
     Initialising,
     /// Ranges arrive and are consistent.
     Tracking,
-    /// No range arrived for a second, or for two rounds of the anchors if those take longer: the position is
-    /// extrapolated.
+    /// No range arrived for a second, or for two rounds of the anchors if those take longer: the position is that after the last
+    /// sample, and its standard deviation grows with the time since.
     Coasting,
     /// The position has become useless: the next ranges determine a new one.
     Lost,
@@ -45,10 +45,11 @@ pub struct Health<T> {
     /// Dilution of precision of the anchors heard; `None` if they do not determine a position.
     pub dilution: Option<T>,
     /// Distance (m) to [`Tracker::mirror_image`](crate::Tracker::mirror_image), the other position that the ranges
-    /// allow; `None` if they allow only one, or for a tracker that does not check this, such as the one on wheels.
+    /// allow; `None` if they allow only one.
     pub mirror: Option<T>,
-    /// Standard deviation of the position (root of the sum of its variances), m: that of the filter, that of the
-    /// anchors' constant errors, and that of the mirror image being as likely; `None` without a position.
+    /// Standard deviation of the position (root of the sum of its variances), m: that of the filter, with the way that the tag may have
+    /// gone since the last sample, that of the anchors' constant errors, and that of the mirror image being as likely; `None` without
+    /// a position.
     pub position_sigma: Option<T>,
     /// The part of `position_sigma` that is due to constant errors, m.
     ///
@@ -63,13 +64,14 @@ pub struct Health<T> {
     pub still: bool,
 }
 
-impl<T: Copy> Health<T> {
+impl<T: Scalar> Health<T> {
     /// Converts to the system-wide health flags. That no position has been found yet is not a fault.
     pub fn in_short(&self) -> kestirim_health::Health {
         let is_blind = self.state == State::Tracking && self.dilution.is_none();
         kestirim_health::Health::GOOD
             .with(Reason::Dropout, self.state == State::Coasting)
             .with(Reason::Rejected, self.distrusted)
+            .with(Reason::Innovations, self.nis > T::from_f64(NIS_OF_AGREEMENT))
             .with(
                 Reason::NotObservable,
                 self.state == State::Lost || is_blind || self.mirror.is_some(),

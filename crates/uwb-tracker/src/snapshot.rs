@@ -11,7 +11,7 @@ layout! {
         as "uwb/tracker", 5, T, [D, N, A];
     [T: Scalar, const D: usize, const N: usize, const A: usize] for DifferenceTracker<T, D, N, A>
         as "uwb/differences", 6, T, [D, N, A];
-    [T: Scalar, const A: usize] for WheelTracker<T, A> as "uwb/wheels", 3, T, [A];
+    [T: Scalar, const A: usize] for WheelTracker<T, A> as "uwb/wheels", 4, T, [A];
     [T: Scalar, const D: usize, const N: usize, const A: usize] for PublishedTracker<T, D, N, A>
         as "uwb/published", 1, T, [D, N, A];
     [T: Scalar, const A: usize] for HeightFinder<T, A> as "uwb/height", 1, T, [A];

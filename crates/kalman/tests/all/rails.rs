@@ -153,6 +153,12 @@ fn a_gain_or_an_expectation_that_does_not_fit_is_refused() {
     let both = Vector2::new(number(1000.0), number(-1500.0));
     let found = ours.update_block(&SMatrix::<Q12_20, 2, 2>::identity(), &both, &noise);
     assert_eq!((found.err(), ours), (Some(Error::NotFinite), before), "a difference of -2400");
+    // A step of 2673 from −100, which from the end of the range would lead to 1948.
+    let before = estimate::<Q12_20>([0.0, -100.0], &matrix![1.0, 0.0; 9.0, 100.0]);
+    let mut ours = before;
+    let row = SparseRow::new([(0, Q12_20::ONE)]);
+    let found = ours.update(&row, number(300.0), number(0.01));
+    assert_eq!((found, ours), (Err(Error::NotFinite), before), "a step of 2673");
 }
 
 #[test]

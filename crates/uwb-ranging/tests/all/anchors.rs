@@ -138,7 +138,18 @@ fn a_point_that_says_nothing_is_refused() {
 
 /// The worst error of a position, m, in a survey with this noise (m) and these pairs missing.
 fn surveyed<T: Scalar>(seed: u64, sigma: f64, missing: &[(usize, usize)]) -> (f64, bool) {
-    let layout = [[0.0, 0.0], [7.0, 0.0], [7.2, 5.0], [0.3, 5.5], [3.0, 6.5], [4.0, -1.0]];
+    surveyed_room::<T>(1.0, seed, sigma, missing)
+}
+
+/// The same in a room that is this many times as large.
+fn surveyed_room<T: Scalar>(
+    size: f64,
+    seed: u64,
+    sigma: f64,
+    missing: &[(usize, usize)],
+) -> (f64, bool) {
+    let layout = [[0.0, 0.0], [7.0, 0.0], [7.2, 5.0], [0.3, 5.5], [3.0, 6.5], [4.0, -1.0]]
+        .map(|place| place.map(|coordinate| coordinate * size));
     let heights = [2.0, 2.5, 1.0, 2.2, 2.0, 1.5];
     let mut random = noise(seed);
     let mut ranges = [[None; 6]; 6];
@@ -176,6 +187,9 @@ fn anchors_find_each_other() {
     check_survey::<f64>();
     check_survey::<f32>();
     check_survey::<Q12_20>();
+    // Distances up to 90 m, whose squares do not fit into fixed point.
+    let (exact, ambiguous) = surveyed_room::<Q12_20>(10.0, 1, 0.0, &[]);
+    assert!(exact < 0.05 && !ambiguous, "{exact}");
 }
 
 #[test]

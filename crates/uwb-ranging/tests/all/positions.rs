@@ -54,6 +54,26 @@ fn check_exact<T: Scalar>(tag: [f64; 3], tolerance: f64) {
     assert!((fix.position.map(T::to_f64) - Vector3::from(tag)).norm() < 5e-3);
 }
 
+#[test]
+fn what_does_not_fit_into_fixed_point_is_refused() {
+    // Squares of these distances exceed 2048, but half of their differences fits, or not.
+    for (side, tag) in [(25.0, [25.0, 50.0]), (20.0, [35.0, 25.0]), (30.0, [15.0, 45.0])] {
+        let corners = [[0.0; 3], [side, 0.0, 0.0], [0.0, side, 0.0], [side, side, 0.0]];
+        let ranges = corners.map(|place| distance(place, [tag[0], tag[1], 0.0]));
+        let prepared = Trilateration::<Q12_20, 4, 2>::new(places(corners)).unwrap();
+        for found in [
+            trilaterate::<Q12_20, 2>(&observations(corners, ranges), Q12_20::ZERO),
+            prepared.position(&ranges.map(Q12_20::from_f64), Q12_20::ZERO),
+        ] {
+            let error = found.map(|it| (it.map(Q12_20::to_f64) - Vector2::from(tag)).norm());
+            assert!(error.is_ok_and(|error| error < 0.01), "{side} m: {error:?}");
+        }
+        let far = ranges.map(|range| range + if range > 40.0 { 500.0 } else { 0.0 });
+        let found = trilaterate::<Q12_20, 2>(&observations(corners, far), Q12_20::ZERO);
+        assert_eq!(found, Err(Error::NotFinite), "{side} m");
+    }
+}
+
 /// The result of a search that is interrupted after every `steps` steps, and the number of interruptions.
 fn searched<T: Scalar, const D: usize>(
     solver: &Solver<T>,

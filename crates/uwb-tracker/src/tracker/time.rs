@@ -72,18 +72,22 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
             {
                 Speed::<T, D> { measured: wheels.speed }.correct(&mut estimate)?;
             }
-            let variances = estimate.covariance.variances();
-            let most = self.lost_sigma * self.lost_sigma;
-            let lost = variances.iter().take(D).any(|&variance| variance > most);
-            if lost {
-                self.give_up();
-            } else {
+            if self.is_known(&estimate) {
                 self.place = Place::Known(estimate);
+            } else {
+                self.give_up();
             }
         }
         self.time_us = time_us;
         self.heard = self.count_heard(time_us);
         Ok(())
+    }
+
+    /// Whether an estimate still says where the tag is.
+    #[inline]
+    pub(super) fn is_known(&self, estimate: &Gaussian<T, N>) -> bool {
+        let most = self.lost_sigma * self.lost_sigma;
+        estimate.covariance.variances().iter().take(D).all(|&variance| variance <= most)
     }
 
     /// Records whether the tag is so near the line through the only anchors heard that it may cross it unnoticed.

@@ -10,6 +10,7 @@ use crate::config::{common_sigmas, size};
 use crate::health::{self, Common, Counters, Place, count_heard};
 use crate::link::Link;
 use crate::measurement::ProportionalRange;
+use crate::mirror::{self, Mirror};
 use crate::pace::Pace;
 use crate::start::Start;
 use crate::take_in::{Known, take_in};
@@ -37,6 +38,8 @@ use nalgebra::SVector;
 pub struct WheelTracker<T: Scalar, const A: usize> {
     config: Config<T>,
     links: Vec<Link<T>, A>,
+    /// The anchors that define the line in which all lie, if they do.
+    flat: Option<Mirror<2>>,
     /// Two courses while the sign of the turns is undecided; none without a position.
     courses: [Option<Course<T>>; 2],
     /// Time of the estimate, µs.
@@ -79,9 +82,11 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
             anchor.check()?;
             links.push(Link::new(*anchor, &config)).map_err(|_| Error::TooManyAnchors)?;
         }
+        let flat = mirror::flat(&links, config.range_sigma);
         Ok(Self {
             config,
             links,
+            flat,
             courses: [None; 2],
             time_us: 0,
             wheels: None,
@@ -119,7 +124,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
         let wheels = self.fresh_wheels(time_us);
         let stands =
             |wheels: &OdometrySample<T>| wheels.speed == T::ZERO && wheels.turn_rate == T::ZERO;
-        let place = self.estimate().and_then(|estimate| {
+        let place = self.later(time_us).and_then(|estimate| {
             // In the room's metres; if the wheels were not heard lately, with their last speed.
             let counted = self.wheels.map_or(T::ZERO, |wheels| wheels.speed);
             let state = estimate.mean.as_array();
@@ -128,15 +133,43 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
                 position: self.position()?,
                 variance: estimate.covariance.get(0, 0)? + estimate.covariance.get(1, 1)?,
                 speed_squared: speed * speed,
-                // Two courses with opposite turns are followed; with collinear anchors both fit, which is not reported
-                // here.
-                mirror: None,
+                mirror: self.across_in_room().map(|across| T::norm(across.as_array())),
                 common: Common::NONE,
             })
         });
         let still = wheels.is_some_and(stands);
         let (of, heard) = ((&self.counters, &self.config), (&*self.links, &self.pace));
         health::health(of, heard, place, time_us, still)
+    }
+
+    /// The estimate predicted to `time_us` without another sample; `None` if it has become useless by then.
+    fn later(&self, time_us: u64) -> Option<Gaussian<T, COUNT>> {
+        let mut course = (*self.courses.get(self.best())?)?;
+        let elapsed = time_us.saturating_sub(self.time_us);
+        if elapsed == 0 {
+            return Some(course.estimate);
+        }
+        let last = self.wheels.map_or(T::ZERO, |wheels| wheels.speed);
+        if elapsed > LOST_US || course.drift(T::from_micro(elapsed as i32), last).is_err() {
+            return None;
+        }
+        (!self.is_lost(&course)).then_some(course.estimate)
+    }
+
+    /// Whether a course no longer says where the tag is.
+    fn is_lost(&self, course: &Course<T>) -> bool {
+        let most = self.size * T::from_f64(LOST_SIGMA);
+        let most = most * most;
+        course.estimate.covariance.variances().iter().take(2).any(|&variance| variance > most)
+    }
+
+    /// Vector from the mirror image behind the line of all anchors to the position, m; `None` unless they lie in one line and the
+    /// room has both sides.
+    fn across_in_room(&self) -> Option<SVector<T, 2>> {
+        let position = self.position()?;
+        let across = mirror::across(self.flat.as_ref()?, &self.links, &position)?;
+        let (other, margin) = (position - across, T::from_f64(mirror::ROOM_MARGIN));
+        self.config.room.is_none_or(|room| room.contains(&other, margin)).then_some(across)
     }
 
     /// Sets the tag's height, m.
@@ -227,13 +260,8 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
                 None => course.drift(interval, last)?,
             }
         }
-        let most = self.size * T::from_f64(LOST_SIGMA);
-        let most = most * most;
-        let lost = |course: &Course<T>| {
-            let variances = course.estimate.covariance.variances();
-            variances.iter().take(2).any(|&variance| variance > most)
-        };
-        let given_up = elapsed > LOST_US || courses.iter().flatten().any(lost);
+        let given_up =
+            elapsed > LOST_US || courses.iter().flatten().any(|course| self.is_lost(course));
         self.courses = if given_up { [None; 2] } else { courses };
         self.time_us = time_us;
         self.heard = count_heard(&self.links, &self.pace, time_us);

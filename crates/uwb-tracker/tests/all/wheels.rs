@@ -26,6 +26,7 @@ const RIGHT: Wrong = Wrong { excess: 0.0, speed: 1.0, turn: 1.0, drift: 0.0 };
 /// A robot that drives loops through the field at 1 m/s, with two ranges per second.
 struct Drive<T: Scalar> {
     tracker: WheelTracker<T, 4>,
+    places: [[f64; 3]; 4],
     place: [f64; 2],
     heading: f64,
     step: u64,
@@ -33,9 +34,13 @@ struct Drive<T: Scalar> {
 
 impl<T: Scalar> Drive<T> {
     fn new() -> Self {
+        Self::among(field(), [4.0, -12.0])
+    }
+
+    fn among(places: [[f64; 3]; 4], place: [f64; 2]) -> Self {
         let config = Config::uncalibrated(T::ZERO);
-        let tracker = WheelTracker::new(config, &anchors(&field(), 0.0)).unwrap();
-        Self { tracker, place: [4.0, -12.0], heading: 0.7, step: 0 }
+        let tracker = WheelTracker::new(config, &anchors(&places, 0.0)).unwrap();
+        Self { tracker, places, place, heading: 0.7, step: 0 }
     }
 
     /// Drives on for this many steps of 0.1 s.
@@ -55,7 +60,7 @@ impl<T: Scalar> Drive<T> {
             if self.step.is_multiple_of(5) {
                 let anchor = (self.step / 5 % 4) as usize;
                 let noise = 0.2 * ((self.step * 7919 % 101) as f64 / 50.0 - 1.0);
-                let far = distance(field()[anchor], [self.place[0], self.place[1], 0.0]);
+                let far = distance(self.places[anchor], [self.place[0], self.place[1], 0.0]);
                 let range = far * (1.0 + wrong.excess) + noise;
                 self.tracker.range(&sample(time_us, anchor, range)).unwrap();
             }
@@ -114,6 +119,43 @@ fn a_sample_after_a_silence_says_nothing_about_the_silence() {
         let sigma = drive.tracker.health(time_us).position_sigma;
         let is_honest = sigma.is_none_or(|sigma| drive.error() < 3.0 * sigma.to_f64());
         assert!(is_honest, "{} m, {sigma:?}", drive.error());
+    }
+    in_every_scalar!(check);
+}
+
+#[test]
+fn a_robot_of_which_nothing_was_heard_may_have_gone_on() {
+    fn check<T: Scalar>() {
+        let mut drive = Drive::<T>::new();
+        drive.on(1500, RIGHT, true);
+        let now_us = 100_000 * drive.step;
+        let sigma = |seconds: u64| {
+            let health = drive.tracker.health(now_us + 1_000_000 * seconds);
+            health.position_sigma.map(T::to_f64)
+        };
+        let (now, later) = (sigma(0).unwrap(), sigma(10).unwrap());
+        assert!(later > now.hypot(1.0), "{now} {later}");
+        assert_eq!(sigma(3600), None);
+    }
+    in_every_scalar!(check);
+}
+
+#[test]
+fn anchors_in_a_line_do_not_tell_its_sides_apart() {
+    fn check<T: Scalar>() {
+        let line = [-24.0, -8.0, 8.0, 24.0].map(|x| [x, 0.0, 2.0]);
+        let mut drive = Drive::<T>::among(line, [4.0, -8.0]);
+        drive.on(600, RIGHT, true);
+        let health = drive.tracker.health(100_000 * drive.step);
+        let (mirror, sigma) = (health.mirror.unwrap(), health.position_sigma.unwrap());
+        assert!((mirror.to_f64() - 2.0 * drive.place[1].abs()).abs() < 2.0, "{mirror:?}");
+        assert!(
+            drive.error() < 3.0 * sigma.to_f64()
+                && health.in_short() != kestirim_health::Health::GOOD
+        );
+        let mut drive = Drive::<T>::new();
+        drive.on(600, RIGHT, true);
+        assert_eq!(drive.tracker.health(100_000 * drive.step).mirror, None);
     }
     in_every_scalar!(check);
 }

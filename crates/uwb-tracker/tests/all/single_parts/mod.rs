@@ -174,7 +174,7 @@ fn a_position_is_given_up_beyond_two_metres() {
     // It is shaken, and no range arrives.
     for step in 1..300 {
         let time_us = NOW_US + 100_000 * step;
-        let Some(sigma) = tracker.health(time_us).position_sigma else { break };
+        let Some(sigma) = tracker.health(time_us - 100_000).position_sigma else { break };
         last = sigma;
         let mut shaken = inertial(time_us, None);
         shaken.acceleration.y = if step % 2 == 0 { 1.0 } else { -1.0 };
@@ -184,6 +184,22 @@ fn a_position_is_given_up_beyond_two_metres() {
     // For each of two coordinates.
     let most = 2.0 * 2_f64.sqrt();
     assert!((0.9 * most..=most).contains(&last), "{last}");
+}
+
+#[test]
+fn a_position_of_which_nothing_was_heard_since_is_worse_each_second() {
+    let mut tracker = following(Config::calibrated(1.0));
+    let health = |seconds: u64| tracker.health(NOW_US + 1_000_000 * seconds);
+    let sigmas = [0, 1, 2].map(|seconds| health(seconds).position_sigma.expect("a position"));
+    assert!(sigmas[1] > 2.0 * sigmas[0] && sigmas[2] > 1.5 * sigmas[1], "{sigmas:?}");
+    // As if a sample said so.
+    let later = health(2);
+    assert_eq!((later.state, health(3600).state), (State::Coasting, State::Lost));
+    assert_eq!(health(3600).position_sigma, None);
+    tracker.inertial(&inertial(NOW_US + 2_000_000, None)).expect("a sample");
+    let told = tracker.health(NOW_US + 2_000_000).position_sigma.expect("a position");
+    // The position itself has gone on.
+    assert!((0.7..=1.0).contains(&(told / sigmas[2])), "{told} {sigmas:?}");
 }
 
 #[test]
@@ -245,7 +261,7 @@ fn a_larger_place_is_given_up_later() {
     let mut last = 0.0;
     for step in 1..3000 {
         let time_us = NOW_US + 100_000 * step;
-        let Some(sigma) = tracker.health(time_us).position_sigma else { break };
+        let Some(sigma) = tracker.health(time_us - 100_000).position_sigma else { break };
         last = sigma;
         let mut shaken = inertial(time_us, None);
         shaken.acceleration.y = if step % 2 == 0 { 1.0 } else { -1.0 };
