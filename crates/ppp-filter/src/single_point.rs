@@ -3,9 +3,12 @@
 use crate::collected::collected;
 use crate::consistency::Consistency;
 use crate::line::code_bias;
+use crate::median::median;
 use crate::running::GROUND;
 use crate::start::code_position;
-use crate::{Config, Error, Health, SatelliteObservation, SatelliteReport, Solution};
+use crate::{
+    Config, Contradiction, Error, Health, SatelliteObservation, SatelliteReport, Solution,
+};
 use heapless::Vec;
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
 use kestirim_gnss_ppp::{
@@ -29,8 +32,12 @@ const LEFT: f64 = 0.5;
 const NOT_TOLD: f64 = 5.0;
 /// The lower limit of the sine of the elevation in mapping delays and weights.
 const LOWEST: f64 = 0.1;
-/// The number of rounds of least squares, each from where the preceding one led.
-const ROUNDS: usize = 2;
+/// The number of rounds of least squares, each from where the preceding one led, and with the noise that it revealed.
+const ROUNDS: usize = 3;
+/// The largest standard deviation of codes relative to that configured which is noise: beyond it they contradict each other.
+const NOISIEST: f64 = 10.0;
+/// The standard deviation of normally distributed errors relative to the median of their sizes.
+const OF_MEDIAN: f64 = 1.4826;
 /// The number of common states: the coordinates and the receiver's clock.
 const COMMON: usize = 4;
 /// The number of all states: the common ones and the clock offsets of further systems.
@@ -84,8 +91,8 @@ impl<'a> CodeObservation<'a> {
 /// `ionosphere`.
 ///
 /// Outliers lose weight as in the filter with the same settings. A code's variance is (a² + b²·cot²E)/2 of
-/// `config.code`, as nothing averages the errors of low satellites; the covariance grows with the residuals of the
-/// other codes. No phase is used, and nothing of any other epoch.
+/// `config.code`, as nothing averages the errors of low satellites, or more if the median of the residuals shows a noisier receiver;
+/// the covariance grows with the residuals of the codes that keep their weight. No phase is used, and nothing of any other epoch.
 ///
 /// # Errors
 /// [`Error`]: why there is no position.
@@ -99,11 +106,13 @@ pub fn single_point<const N: usize>(
     let start = code_position(&collected::<_, N>(codes.iter().filter_map(CodeObservation::whole)))?;
     let mut position = start.position;
     let mut found = Epoch::<N>::at(position, start.clock);
+    let mut scale = 1.0;
     for _ in 0..ROUNDS {
-        found = Epoch::at(position, start.clock);
+        found = Epoch { scale, ..Epoch::at(position, start.clock) };
         found.observe(time, receiver, codes, ionosphere, config);
         found.update(config)?;
         position += found.estimate.mean.xyz();
+        scale = found.residual_scale();
     }
     if !GROUND.contains(&position.norm()) {
         return Err(Error::Contradictory);
@@ -127,6 +136,8 @@ struct Line {
 struct Epoch<const N: usize> {
     place: Vector3<f64>,
     clock: f64,
+    /// The standard deviation of the codes relative to that configured.
+    scale: f64,
     estimate: Gaussian<f64, STATES>,
     lines: Vec<Line, N>,
     decisions: Vec<Decision<f64>, N>,
@@ -136,7 +147,7 @@ impl<const N: usize> Epoch<N> {
     fn at(place: Vector3<f64>, clock: f64) -> Self {
         let covariance = Covariance::from_variances(&[UNKNOWN; STATES]);
         let estimate = Gaussian::new(SVector::zeros(), covariance);
-        Self { place, clock, estimate, lines: Vec::new(), decisions: Vec::new() }
+        Self { place, clock, scale: 1.0, estimate, lines: Vec::new(), decisions: Vec::new() }
     }
 
     fn observe(
@@ -191,7 +202,8 @@ impl<const N: usize> Epoch<N> {
                 system: system(it),
                 expected,
                 innovation: range - expected.range - known,
-                variance: noise + square(left) + square(wet) + square(it.state.accuracy),
+                variance: square(self.scale)
+                    * (noise + square(left) + square(wet) + square(it.state.accuracy)),
                 row: [(0, -x), (1, -y), (2, -z), (3, 1.0), own],
             })
         }));
@@ -218,6 +230,18 @@ impl<const N: usize> Epoch<N> {
         3 + Constellation::ALL.iter().filter(|of| is_heard(of)).count().max(1)
     }
 
+    /// The standard deviation of the codes relative to that configured, at least 1, from the median of all residuals: of those, too,
+    /// that were rejected, since of a noisy receiver these are many.
+    fn residual_scale(&self) -> f64 {
+        let spare = self.lines.len().saturating_sub(self.unknowns());
+        let both = self.lines.iter().zip(&self.decisions);
+        let sizes: Vec<_, N> =
+            collected(both.map(|(line, it)| it.residual.abs() / line.variance.sqrt()));
+        let share = (self.lines.len() as f64 / spare as f64).sqrt();
+        let scale = self.scale * OF_MEDIAN * share * median(&sizes).unwrap_or(0.0);
+        if spare == 0 { 1.0 } else { scale.max(1.0).min(NOISIEST) }
+    }
+
     /// The variance factor of the codes that were used, at least 1: receivers may be noisier than configured, and their
     /// surroundings may reflect.
     fn variance_factor(&self) -> f64 {
@@ -242,6 +266,9 @@ impl<const N: usize> Epoch<N> {
                 phase: Decision::NONE,
                 slipped: None,
             });
+        let contradiction = consistency
+            .contradiction()
+            .or_else(|| (self.residual_scale() >= NOISIEST).then_some(Contradiction::Residuals));
         let heard = self.decisions.iter().filter(|code| code.weight > 0.0).count();
         Solution {
             time,
@@ -252,7 +279,7 @@ impl<const N: usize> Epoch<N> {
             wet_delay: WET_DELAY,
             gradients: [0.0; 2],
             // The accuracy is always metres: no ambiguity is ever known.
-            health: if let Some(contradiction) = consistency.contradiction() {
+            health: if let Some(contradiction) = contradiction {
                 Health::Contradicted(contradiction)
             } else if heard > self.unknowns() + 1 {
                 Health::Converging
