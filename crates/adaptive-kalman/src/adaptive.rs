@@ -88,8 +88,8 @@ impl<T: Scalar, const N: usize, const M: usize> AdaptiveKalman<T, N, M> {
         Ok(report)
     }
 
-    /// [`AdaptiveKalman::update`] without learning, for an epoch whose measurements only just determine the state, so
-    /// that every residual is small and carries no information.
+    /// [`AdaptiveKalman::update`] without learning R, for an epoch whose measurements only just determine the state, so
+    /// that every residual is small and carries no information. Q is learnt from the state's change, as from any.
     ///
     /// # Errors
     /// As [`AdaptiveKalman::update`].

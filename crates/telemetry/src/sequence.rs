@@ -23,7 +23,8 @@ pub enum Order {
     /// The [eighth](RESUMED_AFTER) foreign number in a row, each following the other: the sender restarted, or many
     /// frames are missing. From here on these numbers are followed.
     Resumed {
-        /// How many numbers between the previous newest and the first of these did not come; 0 if the sender restarted.
+        /// How many numbers between the previous newest and this one did not come; those between the first of the eight and this one, if
+        /// the sender restarted.
         missing: u16,
     },
 }
@@ -65,6 +66,8 @@ struct Rival {
     /// How many came since the last number of the followed sender; `first` is the first of them.
     count: u16,
     first: u16,
+    /// How many numbers since the first did not come.
+    missing: u16,
 }
 
 /// Follows the numbers of one sender, and tells those of others apart.
@@ -93,12 +96,17 @@ impl Sequence {
         }
         let newest = followed.newest;
         let known = self.rival.take();
-        let fits = |rival: &mut Rival| rival.chain.take(number).is_some();
         let mut rival = known
-            .and_then(|mut rival| fits(&mut rival).then_some(rival))
-            .unwrap_or(Rival { chain: Chain::new(number), count: 0, first: number });
+            .and_then(|mut rival| {
+                let missing = match rival.chain.take(number)? {
+                    Order::Newest { missing } => rival.missing.saturating_add(missing),
+                    _ => rival.missing.saturating_sub(1),
+                };
+                Some(Rival { missing, ..rival })
+            })
+            .unwrap_or(Rival { chain: Chain::new(number), count: 0, first: number, missing: 0 });
         if rival.count == 0 {
-            rival.first = number;
+            (rival.first, rival.missing) = (number, 0);
         }
         rival.count += 1;
         if rival.count < RESUMED_AFTER {
@@ -106,9 +114,11 @@ impl Sequence {
             return Order::Foreign;
         }
         (self.followed, self.rival) = (Some(rival.chain), None);
-        let missing = rival.first.wrapping_sub(newest).wrapping_sub(1);
-        // A step back means that the sender restarted.
-        Order::Resumed { missing: if missing < u16::MAX / 2 { missing } else { 0 } }
+        let before = rival.first.wrapping_sub(newest).wrapping_sub(1);
+        // A step back, or one to the first numbers of all, means that the sender restarted.
+        let restarted = before >= u16::MAX / 2 || rival.first < RESUMED_AFTER;
+        let missing = rival.missing.saturating_add(if restarted { 0 } else { before });
+        Order::Resumed { missing }
     }
 }
 
@@ -142,7 +152,9 @@ mod tests {
 
     #[test]
     fn a_sender_that_begins_anew_and_a_long_gap_are_followed_after_eight_frames() {
-        for (newest, first, missing) in [(5000, 0, 0), (20, 0, 0), (5000, 9000, 3999)] {
+        for (newest, first, missing) in
+            [(5000, 0, 0), (20, 0, 0), (59_999, 0, 0), (59_999, 2, 0), (5000, 9000, 3999)]
+        {
             let mut sequence = Sequence::new();
             for number in 0..=newest {
                 sequence.take(number);
@@ -153,5 +165,16 @@ mod tests {
             assert_eq!(sequence.take(first + RESUMED_AFTER - 1), Resumed { missing });
             assert_eq!(sequence.take(first + RESUMED_AFTER), NEXT);
         }
+    }
+
+    #[test]
+    fn what_is_missing_among_the_eight_counts_unless_it_comes_late() {
+        let mut sequence = Sequence::new();
+        sequence.take(0);
+        // Every second one; 1005 comes late.
+        for number in [1001, 1003, 1007, 1005, 1009, 1011, 1013] {
+            assert_eq!(sequence.take(number), Foreign);
+        }
+        assert_eq!(sequence.take(1015), Resumed { missing: 1000 + 7 });
     }
 }

@@ -9,6 +9,10 @@ use crate::{Error, Health};
 /// The power to which the likelihood is raised so that credible regions have their nominal coverage: (1 − ρ)/(1 + ρ)
 /// for hovers whose shadowing has the correlation ρ = 0.82, as 20 m apart with a correlation length of 100 m.
 const COMPOSITE_POWER: f64 = 0.1;
+/// Points whose log-weight is this far below the heaviest one's lie outside of a finer lattice.
+const DEPTH: f64 = 12.0;
+/// A lattice is refined until its effective number of points is more than this fraction of them.
+const FEWEST: f64 = 0.05;
 
 /// Locates a transmitter of unknown power over open ground, from the levels received at hovers of a real flight.
 ///
@@ -70,20 +74,17 @@ impl<T: Scalar, const L: usize> BeaconEstimate<T, L> {
         region: &Region<T, 2>,
         inside: impl Fn([T; 2]) -> bool,
     ) -> Result<Self, Error> {
-        let mut posterior = sharp::<T, L>(&channel, measurements, region, &inside)?;
+        let mut posterior = refined::<T, L>(&channel, measurements, region, T::ONE, &inside)?;
         if let Some(likeliest) = posterior.point(posterior.heaviest()) {
             // Again with the noise scale that the residuals at the likeliest place suggest.
             channel = channel.fitted(measurements, likeliest);
-            posterior = sharp(&channel, measurements, region, &inside)?;
+            posterior = refined(&channel, measurements, region, T::ONE, &inside)?;
         }
         let place = posterior.moments().mean();
         let level = channel.level(measurements, place);
         let channel = channel.doubtful();
-        let mut posterior = PointMass::new(region);
-        posterior.update(|place| {
-            let power = T::from_f64(COMPOSITE_POWER);
-            log_posterior(&channel, measurements, place, power, &inside)
-        })?;
+        let power = T::from_f64(COMPOSITE_POWER);
+        let posterior = refined(&channel, measurements, region, power, &inside)?;
         Ok(Self { place, level, posterior, channel })
     }
 
@@ -131,14 +132,16 @@ impl<T: Scalar, const M: usize> Beacon<T, M> {
         BeaconEstimate::of(self.channel, &self.measurements, region, inside)
     }
 
-    /// Whether a place belongs to the smallest region that contains the transmitter with this probability.
+    /// Whether a place belongs to the smallest region that contains the transmitter with this probability, given what is `inside`, as
+    /// for the estimate.
     pub fn credible<const L: usize>(
         &self,
         estimate: &BeaconEstimate<T, L>,
         place: [T; 2],
         probability: T,
+        inside: impl Fn([T; 2]) -> bool,
     ) -> bool {
-        estimate.is_credible(&self.measurements, place, probability)
+        inside(place) && estimate.is_credible(&self.measurements, place, probability)
     }
 
     /// Whether an estimate from these measurements is reliable: reports `innovations` if their levels show a step
@@ -148,20 +151,22 @@ impl<T: Scalar, const M: usize> Beacon<T, M> {
     }
 }
 
-/// The posterior that treats measurements as independent, on a lattice that is refined until it resolves it.
-fn sharp<T: Scalar, const L: usize>(
+/// The posterior of a likelihood raised to this power, on a lattice that is refined until it resolves it.
+fn refined<T: Scalar, const L: usize>(
     channel: &FreeSpace<T>,
     measurements: &[Measurement<T>],
     region: &Region<T, 2>,
+    power: T,
     inside: &impl Fn([T; 2]) -> bool,
 ) -> Result<PointMass<T, 2, L>, FilterError> {
-    let weigh = |place| log_posterior(channel, measurements, place, T::ONE, inside);
+    let weigh = |place| log_posterior(channel, measurements, place, power, inside);
     let mut posterior = PointMass::<T, 2, L>::new(region);
     posterior.update(weigh)?;
-    while let Some(mut finer) = posterior.finer(T::from_f64(12.0)) {
+    let fewest = T::from_binary(L as i32, 0) * T::from_f64(FEWEST);
+    while let Some(mut finer) = posterior.finer(T::from_f64(DEPTH)) {
         finer.update(weigh)?;
         posterior = finer;
-        if posterior.effective() > T::from_binary(L as i32, 0) * T::from_f64(0.05) {
+        if posterior.effective() > fewest {
             break;
         }
     }

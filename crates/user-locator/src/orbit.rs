@@ -41,7 +41,7 @@ pub struct Orbit<T> {
 }
 
 impl<T: Scalar> Orbit<T> {
-    /// Creates a plan that starts in the east, with 0.6 rad between waypoints.
+    /// Creates a plan with 0.6 rad from one waypoint to the next, anticlockwise; the first is 0.6 rad from the east.
     #[inline]
     pub fn new(height: Height<T>) -> Self {
         Self { height, advance: T::from_f64(0.6), angle: T::ZERO }

@@ -285,11 +285,20 @@ fn a_beacon_of_unknown_power_is_found() -> Outcome {
     for level in [None, Some(LevelPrior { mean: -20.0, sigma: 3.0 })] {
         let (mut beacon, place) = beacon(level)?;
         let region = Region::new([-300.0; 2], [300.0; 2])?;
-        let found = beacon.estimate::<1000>(&region, |[x, _]| x > -200.0)?;
+        let inside = |[x, _]: [f64; 2]| x > -200.0;
+        let found = beacon.estimate::<1000>(&region, inside)?;
         assert!(distance(found.place, place) < 30.0, "{:?}", found.place);
         assert!((found.level + 20.0).abs() < 4.0, "{}", found.level);
-        assert!(beacon.credible(&found, place, 0.9));
-        assert!(!beacon.credible(&found, [-290.0, 290.0], 0.9));
+        assert!(beacon.credible(&found, place, 0.9, inside));
+        assert!(!beacon.credible(&found, [-290.0, 290.0], 0.9, inside));
+        assert!(!beacon.credible(&found, place, 0.9, |[x, _]| x < 0.0), "outside");
+        // In a larger region it can be farther away, and is known no better, however few points of it are near.
+        for [size, shift] in [[600.0, 0.0], [5e3, 0.0], [2e4, 0.0], [2e4, 3e3], [2e4, 3.3e3]] {
+            let region = Region::new([shift - size; 2], [shift + size; 2])?;
+            let wide = beacon.estimate::<1000>(&region, inside)?;
+            let [one, other] = [found.sigma(), wide.sigma()];
+            assert!(other > 0.9 * one, "{size} {shift}: {one} {other}");
+        }
         let spread = found.moments().spread();
         assert!((5.0..250.0).contains(&spread), "{spread}");
         let nowhere = beacon.estimate::<100>(&region, |_| false).err();

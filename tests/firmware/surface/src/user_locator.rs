@@ -109,7 +109,7 @@ fn finds<T: Scalar, const M: usize, const L: usize>() -> Option<()> {
     let estimate = any(Beacon::estimate::<L>(&beacon, &region, inside)).ok()?;
     keep(BeaconEstimate::moments(&estimate));
     keep(BeaconEstimate::sigma(&estimate));
-    keep(Beacon::credible(&beacon, &estimate, numbers(), number()));
+    keep(Beacon::credible(&beacon, &estimate, numbers(), number(), inside));
     keep(Beacon::health(&beacon, &estimate));
     Some(())
 }
