@@ -76,6 +76,15 @@ impl<'a> Lines<'a> {
         self.next();
     }
 
+    /// Skips to the next line that begins with `>`, as epochs do, or to the end.
+    pub(crate) fn skip_to_epoch(&mut self) {
+        let rest = &self.text.bytes[self.position..];
+        if !rest.starts_with(b">") {
+            let next = memchr::memmem::find(rest, b"\n>").map(|before| before + 1);
+            self.position += next.unwrap_or(rest.len());
+        }
+    }
+
     /// The next line, where the record requires one.
     ///
     /// # Errors

@@ -22,8 +22,8 @@ const LARGEST_SQUARE: f64 = 7.0;
 const GROSS_SQUARE: f64 = 8.0;
 /// The largest mean of the squared standardised residuals in the first epochs, which hold fewer values.
 const FIRST_SQUARE: f64 = 20.0;
-/// The largest share of rejected observations in the first epochs.
-const FIRST_SHARE: f64 = 0.30;
+/// The largest share of rejected observations of one epoch, and in the first epochs: beyond it, which ones are wrong is a guess, whatever the epochs before.
+const EPOCH_SHARE: f64 = 0.30;
 /// The upper limit on one squared residual, so that a single outlier does not condemn all.
 const LARGEST_SINGLE: f64 = 100.0;
 
@@ -40,6 +40,8 @@ pub(crate) struct Consistency {
     rejecting: u8,
     /// The number of consecutive epochs with larger residuals than may last.
     loud: u8,
+    /// Whether more of the last epoch was rejected than of any may be.
+    is_split: bool,
 }
 
 impl Consistency {
@@ -49,17 +51,21 @@ impl Consistency {
         for sum in [&mut self.judged, &mut self.rejected, &mut self.squares] {
             *sum *= KEPT;
         }
+        let (mut judged, mut rejected) = (0.0, 0.0);
         for decision in decisions {
             match decision.reason {
                 Reason::NoRedundancy | Reason::TooFew => continue,
-                Reason::Rejected => self.rejected += 1.0,
+                Reason::Rejected => rejected += 1.0,
                 _ => {
                     let square = decision.standardised * decision.standardised;
                     self.squares += square.min(LARGEST_SINGLE);
                 }
             }
-            self.judged += 1.0;
+            judged += 1.0;
         }
+        self.is_split = rejected > EPOCH_SHARE * judged;
+        self.judged += judged;
+        self.rejected += rejected;
         let longer = |epochs: u8, is: bool| if is { epochs.saturating_add(1) } else { 0 };
         self.rejecting = longer(self.rejecting, self.rejects(LARGEST_SHARE));
         self.loud = longer(self.loud, self.exceeds(LARGEST_SQUARE));
@@ -70,10 +76,10 @@ impl Consistency {
     pub(crate) fn contradiction(&self) -> Option<Contradiction> {
         let begins = self.epochs < FIRST;
         let (share, square) =
-            if begins { (FIRST_SHARE, FIRST_SQUARE) } else { (GROSS_SHARE, GROSS_SQUARE) };
+            if begins { (EPOCH_SHARE, FIRST_SQUARE) } else { (GROSS_SHARE, GROSS_SQUARE) };
         if self.exceeds(square) || self.loud >= FIRST {
             Some(Contradiction::Residuals)
-        } else if self.rejects(share) || self.rejecting >= FIRST {
+        } else if self.rejects(share) || self.rejecting >= FIRST || self.is_split {
             Some(Contradiction::Rejections)
         } else {
             None
@@ -125,6 +131,21 @@ mod tests {
         assert_eq!(after(10, &epoch).contradiction(), Some(Contradiction::Rejections));
         epoch[3..8].fill(decision(Reason::Rejected, 1e3));
         assert_eq!(after(1, &epoch).contradiction(), Some(Contradiction::Rejections));
+    }
+
+    #[test]
+    fn an_epoch_of_which_a_third_is_rejected_is_contradicted_whatever_was_before() {
+        let mut consistency = after(100, &[decision(Reason::Agrees, 1.0); 20]);
+        let mut epoch = [decision(Reason::Agrees, 1.0); 20];
+        epoch[..6].fill(decision(Reason::Rejected, 1e3));
+        consistency.update(epoch.iter());
+        assert_eq!(consistency.contradiction(), None);
+        let mut consistency = after(100, &[decision(Reason::Agrees, 1.0); 20]);
+        epoch[6] = decision(Reason::Rejected, 1e3);
+        consistency.update(epoch.iter());
+        assert_eq!(consistency.contradiction(), Some(Contradiction::Rejections));
+        consistency.update([decision(Reason::Agrees, 1.0); 20].iter());
+        assert_eq!(consistency.contradiction(), None);
     }
 
     #[test]

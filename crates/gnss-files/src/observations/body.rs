@@ -15,6 +15,9 @@ use crate::text::{Line, Lines, Text};
 use crate::time::{GpsTime, full_year};
 use crate::unserved::Unserved;
 
+/// The share of epochs, one in so many, that may be damaged.
+const MOST_DAMAGED: usize = 100;
+
 /// The epochs of a file with all their signals.
 #[derive(Debug, Default)]
 pub(super) struct Body {
@@ -39,38 +42,62 @@ struct RawEpoch {
     end: usize,
 }
 
+/// Whether a line is the first one of a file.
+fn is_header(line: &Line<'_>) -> bool {
+    line.label() == b"RINEX VERSION / TYPE"
+}
+
 impl Body {
     pub(super) fn new(header: Header) -> Self {
         Self { latest: header.clone(), header, ..Self::default() }
     }
 
-    /// Reads all epochs.
+    /// Reads all epochs. A damaged one is left out where the next is recognised by its first letter, from RINEX 3 on.
     pub(super) fn read<'a>(&mut self, text: &'a Text, lines: &mut Lines<'a>) -> Result<(), Error> {
         self.warnings.extend(self.header.antenna_problem().map(|problem| text.warning(problem)));
+        let (mut damaged, mut first_damage) = (0, None);
         while let Some(line) = lines.next() {
             if line.bytes.trim_ascii().is_empty() {
                 continue;
             }
-            let (records, raw) = (self.records.len(), self.raw.len());
-            let epochs = self.epochs.len();
-            let doubled = self.doubled;
+            let (records, raw, epochs) = (self.records.len(), self.raw.len(), self.epochs.len());
+            let (doubled, below) = (self.doubled, lines.clone());
             let result = self.epoch(&line, lines);
             let complete = result.is_ok() && (text.ends_with_line_break() || !lines.is_at_end());
             if complete {
                 continue;
             }
-            if let Err(error) = result {
-                // An error before the last line is no truncation.
-                if !lines.is_at_end() || epochs == 0 {
-                    return Err(error);
-                }
-            }
             self.doubled = doubled;
             self.epochs.truncate(epochs);
             self.records.truncate(records);
             self.raw.truncate(raw);
-            self.warnings
-                .push(line.warning("the file was cut off in this epoch, which is left out"));
+            // An error before the last line is no truncation.
+            match result {
+                Err(error) if !lines.is_at_end() || epochs == 0 => {
+                    if self.header.version < 3 || epochs == 0 || is_header(&line) {
+                        return Err(error);
+                    }
+                    damaged += 1;
+                    first_damage = first_damage.or(Some(error));
+                    *lines = below;
+                    lines.skip_to_epoch();
+                }
+                _ => self
+                    .warnings
+                    .push(line.warning("the file was cut off in this epoch, which is left out")),
+            }
+        }
+        if let Some(first) = first_damage {
+            if damaged * MOST_DAMAGED > self.epochs.len() {
+                return Err(first);
+            }
+            let (line, problem) = match first {
+                Error::Line { line, problem, .. } => (Some(line), problem),
+                other => (None, other.to_string()),
+            };
+            let problem =
+                format!("damaged epochs, left out: {damaged}; the first is this: {problem}");
+            self.warnings.push(Warning { line, ..text.warning(problem) });
         }
         if self.raw.is_empty() {
             return Err(
@@ -107,7 +134,7 @@ impl Body {
 
     /// Reads the epoch or event that begins with `line`.
     fn epoch<'a>(&mut self, line: &Line<'a>, lines: &mut Lines<'a>) -> Result<(), Error> {
-        if line.label() == b"RINEX VERSION / TYPE" {
+        if is_header(line) {
             return Err(line.error("expected an epoch, found the header of a second file: separate files that were joined"));
         }
         let old = self.header.version < 3;

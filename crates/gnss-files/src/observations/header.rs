@@ -35,6 +35,8 @@ pub(super) struct Header {
     pub(super) approximate_position: Option<[f64; 3]>,
     /// The antenna's height, east and north offset from its marker, m, if given.
     pub(super) antenna_delta_hen: Option<[f64; 3]>,
+    /// Whether the antenna stands beside the reference point of a vehicle, by the vehicle's axes.
+    is_off_vehicle: bool,
     /// The observables, in the order of [`System::ALL`].
     lists: [List; System::ALL.len()],
     /// The frequency channels of GLONASS satellites, by satellite number.
@@ -95,8 +97,8 @@ impl Header {
                     Some(position).filter(|position| position.iter().any(|&x| x != 0.0));
             }
             b"ANTENNA: DELTA H/E/N" => self.antenna_delta_hen = Some(three(line)?),
-            // The offset on a vehicle, in body axes.
             b"ANTENNA: DELTA X/Y/Z" => {
+                self.is_off_vehicle = three(line)?.iter().any(|&axis| axis != 0.0);
                 self.antenna_delta_hen.get_or_insert_default();
             }
             b"TIME OF FIRST OBS" => time_system(line)?,
@@ -108,6 +110,9 @@ impl Header {
 
     /// A problem with the antenna's offset from its marker, if there is one.
     pub(super) fn antenna_problem(&self) -> Option<String> {
+        if self.is_off_vehicle {
+            return Some("the antenna stands beside the vehicle's reference point (DELTA X/Y/Z), by the vehicle's own axes: the position is the antenna's".to_owned());
+        }
         let Some([height, east, north]) = self.antenna_delta_hen else {
             return Some("no height of the antenna is told, so the position is not the marker's but the antenna's".to_owned());
         };

@@ -166,6 +166,37 @@ fn garbage_in_the_middle_is_located() {
 }
 
 #[test]
+fn a_damaged_epoch_among_hundreds_is_left_out() -> Result<(), Error> {
+    let header = observations_3_header();
+    let body = observations_3()[header.len()..].to_owned();
+    let whole = header + &body.repeat(100);
+    let count = |file: &str| -> Result<_, Error> {
+        let found = Observations::parse(&text(file))?;
+        let told = sentences(&found.warnings);
+        Ok((told.len(), told.into_iter().find(|told| told.contains("damaged"))))
+    };
+    let (clean, _) = count(&whole)?;
+    // The second epoch, on line 17, is damaged, or something stands before it. (The first one tells whether the file is what it
+    // should be.)
+    for (damaged, line) in [
+        (whole.replacen("22000001.000", "************", 1), 18),
+        (whole.replacen("22000001.000", "         nan", 1), 18),
+        (whole.replacen("> 2020 01 01 00 00 30", "# a remark\n> 2020 01 01 00 00 30", 1), 17),
+        (whole.replacen("> 2020 01 01 00 00 30", "\0\0\0\n> 2020 01 01 00 00 30", 1), 17),
+    ] {
+        let (told, sentence) = count(&damaged)?;
+        let sentence = sentence.expect("it is told");
+        let expected = format!("file, line {line}: damaged epochs, left out: 1");
+        assert!(sentence.starts_with(&expected), "{sentence}");
+        assert_eq!(told, clean + 1);
+    }
+    // Too many.
+    let damaged = whole.replace("22000001.000", "************");
+    assert!(complaint(&damaged).contains("line 18: expected an observation"));
+    Ok(())
+}
+
+#[test]
 fn epochs_told_twice_are_taken_once() -> Result<(), Error> {
     let whole = observations_3();
     let body = &whole[observations_3_header().len()..];
