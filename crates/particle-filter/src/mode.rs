@@ -10,10 +10,11 @@ const CANDIDATES: usize = 32;
 const STEPS: usize = 12;
 
 impl<T: Scalar, const D: usize, const N: usize> Particles<T, D, N> {
-    /// The highest peak of the density, smoothed with Epanechnikov's kernel of these half-widths. For a
+    /// The highest peak of the density, smoothed with the biweight kernel of these half-widths. For a
     /// posterior with several peaks this is the main one, while the mean lies between them.
     ///
-    /// Starts at the densest of the heaviest and up to 32 other particles, and proceeds by mean shift: O(57·N).
+    /// Starts at the densest of the heaviest and up to 32 other particles, and proceeds by mean shift with the weights of Epanechnikov's
+    /// kernel, which climbs the density of the biweight kernel: O(57·N).
     ///
     /// # Errors
     /// [`Error::NotPositive`] if a half-width is not above zero.

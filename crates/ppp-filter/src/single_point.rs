@@ -239,7 +239,7 @@ impl<const N: usize> Epoch<N> {
             collected(both.map(|(line, it)| it.residual.abs() / line.variance.sqrt()));
         let share = (self.lines.len() as f64 / spare as f64).sqrt();
         let scale = self.scale * OF_MEDIAN * share * median(&sizes).unwrap_or(0.0);
-        if spare == 0 { 1.0 } else { scale.max(1.0).min(NOISIEST) }
+        if spare == 0 { 1.0 } else { scale.clamp(1.0, NOISIEST) }
     }
 
     /// The variance factor of the codes that were used, at least 1: receivers may be noisier than configured, and their

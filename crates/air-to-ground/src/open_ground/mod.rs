@@ -85,7 +85,8 @@ impl Pattern {
 ///   is stronger on one side.
 /// * The floor is the receiver's own noise, in which a weak signal drowns: none, or at one of three quantiles of the
 ///   levels. Levels at the strongest one are saturated if at least four are equal.
-/// * The noise has Student's t-distribution with ν = 4 and a scale of 1.2, 2.2 or 4 dB; that of the floor has 1.7 dB.
+/// * The noise has Student's t-distribution with ν = 4. Its scale is 1.2, 2.2 or 4 dB, and in quadrature the 1.7 dB by which a
+///   receiver's readings waver; that of the floor is the latter alone.
 ///
 /// For each [`Supposition`] (pattern, floor, scale) level, exponent and coefficients are fitted, and integrated over by Laplace's
 /// approximation (`MacKay`, *Information Theory, Inference, and Learning Algorithms*, ch. 27):
