@@ -71,12 +71,12 @@ pub struct TextFile {
 }
 
 impl TextFile {
-    /// Reads a file as UTF-8.
+    /// Reads a file as UTF-8, which may be packed with gzip.
     ///
     /// # Errors
-    /// [`Error::Read`] if the file cannot be read, [`Error::Line`] where it is not text.
+    /// Those of [`unpacked`]; [`Error::Line`] where it is not text.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        Self::from_bytes(path, bytes(path)?)
+        Self::from_bytes(path, unpacked(path)?)
     }
 
     /// Takes the contents of the file `path`; a byte order mark is dropped.

@@ -10,6 +10,9 @@ const SAMPLE: usize = 4000;
 /// The largest usual step, s, of times of day that are recognised: within a minute there are several.
 const LONGEST_OF_DAY: f64 = 10.0;
 
+/// The duration, s, of a log that is rather one in a smaller unit: a day.
+const LONGEST_LOG: f64 = 86_400.0;
+
 /// Refuses hours, minutes and seconds in one number, such as 115959.5 before 120000, as NMEA writes them: taken for seconds, each
 /// minute would last for a hundred. No time has more than 59 minutes or 60 seconds then, and where a minute or an hour
 /// ends, the next time is 40 or 4040 more than a step away. Thousandths of seconds may follow without a sign.
@@ -46,8 +49,8 @@ pub(crate) fn refuse_times_of_day(times: &[f64], option: &str) -> Result<(), Err
     Ok(())
 }
 
-/// The unit in which the usual step of the times lies in the range `usual`, s: seconds if they fit, or else the one
-/// unit that fits.
+/// The unit in which the usual step of the times lies in the range `usual`, s: seconds if they fit and the log does not last longer
+/// than a day then, or else the one unit that fits.
 ///
 /// # Errors
 /// [`Error::Undecided`] if no unit fits, or several that are shorter than a second; or if the times are hours, minutes and
@@ -73,7 +76,9 @@ pub fn unit_of_times(
     let (_, &mut step, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
     let fitting: Vec<_> =
         units.iter().filter(|unit| usual.contains(&(step * unit.scale))).collect();
+    let lasts = times.last().zip(times.first()).map_or(0.0, |(last, first)| (last - first).abs());
     match fitting[..] {
+        [first, other] if first.scale == 1.0 && lasts > LONGEST_LOG => Ok(other.clone()),
         [first, ..] if first.scale == 1.0 => Ok(first.clone()),
         [only] => Ok(only.clone()),
         _ => Err(Error::undecided(format!("expected times in s, found steps of {step}"), OPTION)),
@@ -171,6 +176,10 @@ mod tests {
         let whole = (0..100).map(|i| f64::from(5 * i));
         assert_eq!(unit_of_range_times(whole, 2e-3..=2.0).unwrap().name, "ms");
         assert_eq!(unit_of_times((0..3600).map(f64::from), 2e-3..=2.0).unwrap().name, "s");
+        // A hundred hertz for two minutes, rather than a measurement each ten seconds for 33 hours.
+        let tens = |count: i32| (0..count).map(|i| f64::from(10 * i));
+        assert_eq!(unit_of_times(tens(12_000), 2e-3..=60.0).unwrap().name, "ms");
+        assert_eq!(unit_of_times(tens(1000), 2e-3..=60.0).unwrap().name, "s");
         // No unit fits; a step of a thousand may be a second in ms or a millisecond in µs.
         for (step, shortest) in [(1e-7, 2e-3), (1e3, 5e-4)] {
             let error = unit_of_times(times(step), shortest..=2.0).unwrap_err().to_string();

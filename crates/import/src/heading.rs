@@ -158,22 +158,32 @@ impl<'a> Heading<'a> {
     /// The column of this name, if there is one: chosen by an option, by an exact match, or by a known alias.
     ///
     /// # Errors
-    /// [`Error::Line`] if two columns match, or if the column that an option names is missing.
+    /// [`Error::Line`] if two columns match, or if the column that an option names is missing; if the line of units has a unit that is
+    /// not known for it, or another than its name.
     pub fn find(&self, name: &str) -> Result<Option<Place>, Error> {
-        let unit = self.options.units.of(name);
+        let Some((column, named)) = self.column(name)? else { return Ok(None) };
+        let said = self.options.columns.of(name);
+        let unit = match self.options.units.of(name) {
+            Some(unit) => Some(unit),
+            None => self.unit(name, column, named)?,
+        };
+        Ok(Some(Place {
+            column,
+            name: self.names[column].clone(),
+            unit,
+            is_negative: said.is_some_and(|pick| pick.is_negative),
+        }))
+    }
+
+    /// The column of this name and the unit in its own name.
+    fn column(&self, name: &str) -> Result<Option<(usize, Option<Unit>)>, Error> {
         let said = self.options.columns.of(name);
         let wanted = said.map_or(name, |pick| pick.name.as_str());
         let exact: Vec<_> = (0..self.names.len()).filter(|&i| self.names[i] == wanted).collect();
-        let place = |column: usize, named: Option<Unit>| Place {
-            column,
-            name: self.names[column].clone(),
-            unit: unit.clone().or(named).or_else(|| self.unit_below(name, column)),
-            is_negative: said.is_some_and(|pick| pick.is_negative),
-        };
         match (exact[..].first(), exact.len(), said) {
             (Some(&column), 1, _) => {
                 let named = said.and_then(|_| self.named(name, column)?.unit);
-                return Ok(Some(place(column, named)));
+                return Ok(Some((column, named)));
             }
             (Some(_), _, _) => {
                 return Err(Error::line(
@@ -197,17 +207,48 @@ impl<'a> Heading<'a> {
             );
             return Err(Error::line(self.line, problem));
         }
-        Ok(Some(place(column, named)))
+        Ok(Some((column, named)))
     }
 
-    /// The unit of the wanted column in the line of units.
-    fn unit_below(&self, wanted: &str, column: usize) -> Option<Unit> {
-        let known = KNOWN.iter().find(|known| known.name == wanted);
-        let quantity = match known {
-            Some(known) => known.quantity?,
-            None => meaning(wanted)?.quantity,
+    /// The unit of the wanted column: that in its name, or that in the line of units.
+    fn unit(
+        &self,
+        wanted: &str,
+        column: usize,
+        named: Option<Unit>,
+    ) -> Result<Option<Unit>, Error> {
+        let quantity = match KNOWN.iter().find(|known| known.name == wanted) {
+            Some(known) => known.quantity,
+            None => meaning(wanted).map(|meaning| meaning.quantity),
         };
-        Unit::read(quantity, self.units.get(column)?.as_deref()?)
+        let Some(quantity) = quantity else { return Ok(named) };
+        let below = self.unit_below(column, quantity).map_err(|written| {
+            let (name, written) = (quoted(&self.names[column]), quoted(written));
+            let problem = format!(
+                "expected a unit that is known below {name}, found {written}; --units {wanted}= decides"
+            );
+            Error::line(self.line, problem)
+        })?;
+        match (&named, &below) {
+            (Some(named), Some(below)) if named.scale != below.scale => {
+                let problem = format!(
+                    "expected one unit of {}, found {named} in its name and {below} below; --units {wanted}= decides",
+                    quoted(&self.names[column])
+                );
+                Err(Error::line(self.line, problem))
+            }
+            _ => Ok(named.or(below)),
+        }
+    }
+
+    /// The unit of a column in the line of units; what is written there if it is no unit of this quantity.
+    pub(crate) fn unit_below(
+        &self,
+        column: usize,
+        quantity: Quantity,
+    ) -> Result<Option<Unit>, &str> {
+        let Some(Some(written)) = self.units.get(column) else { return Ok(None) };
+        Unit::read(quantity, written).map(Some).ok_or(written)
     }
 
     /// Whether a column may be the wanted one, and the unit that its name contains.

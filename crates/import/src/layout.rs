@@ -116,20 +116,19 @@ fn any_names(bytes: &[u8]) -> Vec<String> {
     words.filter(|word| !word.is_empty()).collect()
 }
 
-/// The units of a line that consists of units, and of no number: a share has the unit 1.
+/// The units of a line that consists of units, and of no number, and of which at least half of the words are known. (Some units are
+/// written as numbers: 1e7.)
 pub(crate) fn units_line(fields: Vec<String>) -> Option<Vec<Option<String>>> {
-    if fields.iter().any(|field| fast_float2::parse::<f64, _>(field).is_ok()) {
-        return None;
-    }
     let fields: Vec<_> = fields
         .into_iter()
         .map(|field| field.trim_matches(['[', ']', '(', ')']).to_owned())
+        .map(|field| Some(field).filter(|field| !field.is_empty() && field != "-"))
         .collect();
-    let known = fields.iter().filter(|field| unit::is_known(field)).count();
-    let named = fields.iter().filter(|field| !field.is_empty() && *field != "-").count();
-    (named > 1 && known * 2 > named).then(|| {
-        fields.into_iter().map(|field| Some(field).filter(|field| !field.is_empty())).collect()
-    })
+    let words = || fields.iter().flatten();
+    let is_number = |word: &String| fast_float2::parse::<f64, _>(word).is_ok();
+    let known = words().filter(|word| unit::is_known(word)).count();
+    let is_row = words().any(|word| is_number(word) && !unit::is_known(word));
+    (known > 0 && known * 2 >= words().count() && !is_row).then_some(fields)
 }
 
 /// What most rows hold in each column.

@@ -207,6 +207,21 @@ mod tests {
         let (table, places) = found.unwrap().unwrap();
         assert_eq!(places.map(|place| place.scale()), [1e-3, 0.3048]);
         assert_eq!(table.rows().map(|(line, _)| line).collect::<Vec<_>>(), [3]);
+        // One unit is enough; what contradicts the name, or is unknown, is no guess.
+        let text = Text::new(b"t,x,y [m]\n,,ft\n0.5,1,2\n").unwrap();
+        let sentence = |text: &Text<'_>, name| {
+            let found = NamedTable::find(text, &options, |heading| heading.require([name]));
+            found.unwrap().map(|(_, [place])| place.scale()).map_err(|error| error.to_string())
+        };
+        assert_eq!(sentence(&text, "x"), Ok(1.0));
+        let error = sentence(&text, "y").unwrap_err();
+        assert_eq!(
+            error,
+            "line 1: expected one unit of \"y [m]\", found m in its name and ft below; --units y= decides"
+        );
+        let text = Text::new(b"t,anchor,range\ns,-,yd\n0.5,1,2\n").unwrap();
+        let error = sentence(&text, "range").unwrap_err();
+        assert!(error.contains("known below \"range\", found \"yd\"; --units range="), "{error}");
         // Numbers are a row, though a share is written in parts of 1.
         let text = Text::new(b"t,x,y\n1,1,1\n").unwrap();
         let table = NamedTable::find(&text, &options, |heading| heading.require(["t", "x"]));

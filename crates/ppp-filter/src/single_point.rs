@@ -236,8 +236,8 @@ impl<const N: usize> Epoch<N> {
         let spare = self.lines.len().saturating_sub(self.unknowns());
         let both = self.lines.iter().zip(&self.decisions);
         let sizes: Vec<_, N> =
-            collected(both.map(|(line, it)| it.residual.abs() / line.variance.sqrt()));
-        let share = (self.lines.len() as f64 / spare as f64).sqrt();
+            collected(both.map(|(line, it)| it.residual.abs() / libm::sqrt(line.variance)));
+        let share = libm::sqrt(self.lines.len() as f64 / spare as f64);
         let scale = self.scale * OF_MEDIAN * share * median(&sizes).unwrap_or(0.0);
         if spare == 0 { 1.0 } else { scale.clamp(1.0, NOISIEST) }
     }

@@ -115,7 +115,7 @@ fn follow(
 ) -> Result<Followed, Error> {
     let order = sensors.put_in_order();
     let is_sorted = order.is_some();
-    let dropped = sensors.drop_wrong_times();
+    let dropped = sensors.drop_wrong_times()?;
     let changed = order.map(str::to_owned).into_iter().chain(dropped).collect();
     let events = sensors.events();
     let (setup, known) = if known == KnownHeight::NotFound {

@@ -67,16 +67,6 @@ fn ranges_of_any_program_give_the_same_path() {
             1.0,
         ),
         (
-            "32bits.csv",
-            "time_us,anchor,range\n".to_owned()
-                + &lines(rows(&room.log), |(t, anchor, range)| {
-                    // The counter ends after 3 s.
-                    let time = (mm(t) as u32).wrapping_sub(3000).wrapping_mul(1000);
-                    format!("{time},A{anchor},{range}")
-                }),
-            0.1,
-        ),
-        (
             "ms.csv",
             "anchor,t,range_mm\n".to_owned()
                 + &lines(rows(&room.log), |(t, anchor, range)| {
@@ -136,6 +126,26 @@ fn ranges_of_any_program_give_the_same_path() {
         let off_mm = 1e3 * (length(&found) - length(&plain)).abs();
         assert!(off_mm <= tolerance_mm, "{name}: {off_mm} mm");
     }
+}
+
+#[test]
+fn a_clock_that_begins_anew_goes_on() {
+    let room = Room::clean();
+    let links = |log: &str| {
+        let files = ["replay", "robot", "--anchors", &room.anchors, "--log", log, "--json"];
+        json(&host_sim(&[&files[..], &["--height", "1"]].concat()))["links"].clone()
+    };
+    let microseconds = |name: &str, offset: u32| {
+        let line = |(t, anchor, range): (f64, usize, f64)| {
+            let time = ((t * 1e6).round() as u32).wrapping_add(offset);
+            format!("{time},A{anchor},{range}")
+        };
+        let rows = lines(rows(&room.log), line);
+        room.desk.file(name, "time_us,anchor,range\n".to_owned() + &rows)
+    };
+    // The second one after three seconds.
+    let whole = links(&microseconds("whole.csv", 0));
+    assert_eq!(whole, links(&microseconds("anew.csv", 0_u32.wrapping_sub(3_000_000))));
 }
 
 #[test]

@@ -102,7 +102,8 @@ fn columns(heading: &Heading<'_>, anchors: &[String], options: &Options) -> Vec<
     let names = heading.names().iter().enumerate();
     let column = |(at, name): (usize, &String)| {
         let (base, unit) = taken_apart(name);
-        let scale = said.as_ref().or(unit.as_ref()).map_or(1.0, |unit| unit.scale);
+        let below = heading.unit_below(at, Quantity::Length).ok().flatten();
+        let scale = said.as_ref().or(unit.as_ref()).or(below.as_ref()).map_or(1.0, |it| it.scale);
         let (label, stem, is_listed) = label(base, anchors)?;
         Some(Ranges { at, label, scale, stem, is_listed })
     };

@@ -22,4 +22,16 @@ pub enum Error {
         /// The standard deviation that it would add to the position, m.
         position_sigma_m: f64,
     },
+    /// The times of a sensor fall back, and too many of them to be mistakes.
+    #[error(
+        "times fall back: {dropped} of {count} {what} are more than 10 s off the times around them, as where a clock begins anew: split the log there"
+    )]
+    Times {
+        /// The samples.
+        what: &'static str,
+        /// Number of samples off the times around them.
+        dropped: usize,
+        /// Number of all samples.
+        count: usize,
+    },
 }

@@ -2,7 +2,7 @@
 
 use std::iter::from_fn;
 
-use super::Course;
+use super::{Course, Error};
 
 /// An input of a tracker. Times are those of the log's clock, µs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,14 +121,17 @@ impl Sensors {
 
     /// Drops samples whose time is more than 10 s ahead of what follows them, or behind what precedes them, whichever are
     /// fewer, and returns a warning if there were any: a single wrong time would make everything else late.
-    pub fn drop_wrong_times(&mut self) -> Option<String> {
-        let dropped = drop_wrong(&mut self.ranges, |row| row.time_us)
-            + drop_wrong(&mut self.differences, |difference| difference.time_us)
-            + drop_wrong(&mut self.inertial, |sample| sample.time_us)
-            + drop_wrong(&mut self.wheels, |sample| sample.time_us);
-        (dropped > 0).then(|| {
+    ///
+    /// # Errors
+    /// [`Error::Times`] if they are more than a tenth of a sensor's.
+    pub fn drop_wrong_times(&mut self) -> Result<Option<String>, Error> {
+        let dropped = drop_wrong("ranges", &mut self.ranges, |row| row.time_us)?
+            + drop_wrong("differences", &mut self.differences, |difference| difference.time_us)?
+            + drop_wrong("samples of the IMU", &mut self.inertial, |sample| sample.time_us)?
+            + drop_wrong("samples of the wheels", &mut self.wheels, |sample| sample.time_us)?;
+        Ok((dropped > 0).then(|| {
             format!("{dropped} samples are more than 10 s off the times around them: left out")
-        })
+        }))
     }
 
     /// All events in the order of their times. The samples of one sensor are never reordered: the tracker rejects times
@@ -174,8 +177,15 @@ impl Sensors {
 /// The largest step back in time of later samples, µs; where they go back further, a time is wrong.
 const LARGEST_STEP_BACK_US: i64 = 10_000_000;
 
+/// The largest share of samples, one in so many, whose times are mistakes.
+const MOST_WRONG: usize = 10;
+
 /// Drops the fewest samples whose times are wrong; returns their number.
-fn drop_wrong<S>(samples: &mut Vec<S>, time_us: impl Fn(&S) -> i64) -> usize {
+fn drop_wrong<S>(
+    what: &'static str,
+    samples: &mut Vec<S>,
+    time_us: impl Fn(&S) -> i64,
+) -> Result<usize, Error> {
     let times: Vec<_> = samples.iter().map(time_us).collect();
     let mut latest_us = i64::MIN;
     let is_behind: Vec<_> = (times.iter())
@@ -195,9 +205,13 @@ fn drop_wrong<S>(samples: &mut Vec<S>, time_us: impl Fn(&S) -> i64) -> usize {
     is_ahead.reverse();
     let count = |wrong: &[bool]| wrong.iter().filter(|it| **it).count();
     let wrong = if count(&is_behind) < count(&is_ahead) { is_behind } else { is_ahead };
+    let (dropped, count) = (count(&wrong), samples.len());
+    if dropped * MOST_WRONG > count {
+        return Err(Error::Times { what, dropped, count });
+    }
     let mut each = wrong.iter();
     samples.retain(|_| each.next() == Some(&false));
-    count(&wrong)
+    Ok(dropped)
 }
 
 /// Merges two sequences in the order of their times; at equal times, the first comes before the second.
@@ -241,5 +255,22 @@ mod tests {
         assert_eq!(times, [1, 2, 10, 10, 10, 11, 12, 20, 20, 5, 5, 30]);
         let ends = |event: &&Event| matches!(event, Event::EpochEnd { .. });
         assert_eq!(sensors.events().iter().filter(ends).count(), 2);
+    }
+
+    #[test]
+    fn one_wrong_time_is_left_out_and_a_clock_that_begins_anew_is_refused() {
+        let dropped = |wrong: usize, time_us: i64| {
+            let mut times: Vec<i64> = (0..100).map(|k| 1_000_000 * k).collect();
+            times[50..50 + wrong].fill(time_us);
+            let range = |time_us| RangeRow { time_us, anchor: 0, range: Some(1.0) };
+            let mut sensors = Sensors::ranges(times.into_iter().map(range).collect());
+            let told = sensors.drop_wrong_times();
+            (told.map(|told| told.is_some()), sensors.ranges.len())
+        };
+        assert_eq!(dropped(1, 1_000_000_000_000), (Ok(true), 99));
+        assert_eq!(dropped(10, 0), (Ok(true), 90));
+        let times = Error::Times { what: "ranges", dropped: 11, count: 100 };
+        assert_eq!(dropped(11, 0), (Err(times), 100));
+        assert_eq!(dropped(0, 0), (Ok(false), 100));
     }
 }

@@ -10,7 +10,7 @@ pub mod ranges;
 use std::path::{Path, PathBuf};
 
 use kestirim_import::Options;
-use kestirim_replay::robot::{Anchors, Course, Event, Sensors};
+use kestirim_replay::robot::{self, Anchors, Course, Event, Sensors};
 
 use self::ranges::RangeLog;
 use super::height::FoundOnce;
@@ -166,12 +166,12 @@ impl Recording {
 
     fn read_moving(&mut self, log: &Path, files: &Files) -> Result<(), Error> {
         let options = files.reading.tables()?;
-        let (log, found) = ranges::read_moving(log, &self.anchors, options)?;
+        let (RangeLog { rows: ranges, differences, unlisted, without }, found) =
+            ranges::read_moving(log, &self.anchors, options)?;
         self.tell("ranges", &found);
         let truth = files.one("truth").map(|path| points::read_course(path, ["x", "y"]));
         let height = files.one("height").map(|path| points::read_course(path, ["z"]));
         let (mut truth, height) = (truth.transpose()?, height.transpose()?);
-        let (ranges, differences) = (log.rows, log.differences);
         let mut sensors = Sensors { ranges, differences, height, ..Sensors::default() };
         if let Some(path) = files.one("imu") {
             let (samples, found) = motion::read_inertial(path, options)?;
@@ -187,11 +187,21 @@ impl Recording {
             self.warn("the IMU has no columns ax,ay,az or lax,lay,laz: it is not used");
         }
         days::align(&mut sensors, &mut truth);
-        self.warn_of_left_out(log.unlisted, log.without);
+        let span = days::span_us(&sensors);
+        let of_truth = truth.as_ref().and_then(|truth| days::doubt("truth", truth, span));
+        let height = sensors.height.as_ref();
+        let of_height = height.and_then(|height| days::doubt("height", height, span));
+        self.warnings.extend(of_truth.into_iter().chain(of_height));
+        self.warn_of_left_out(unlisted, without);
         if let Some(order) = sensors.put_in_order() {
             self.warn(order);
         }
-        if let Some(dropped) = sensors.drop_wrong_times() {
+        let dropped = sensors.drop_wrong_times();
+        let refused = |error: robot::Error| Error::File {
+            path: log.to_path_buf(),
+            problem: error.to_string(),
+        };
+        if let Some(dropped) = dropped.map_err(refused)? {
             self.warn(dropped);
         }
         let truth = truth.map(Truth::Course);

@@ -87,6 +87,7 @@ pub fn read(path: &Path, options: &Options) -> Result<(Flight, Found), Error> {
         },
     )?;
     found.import.extend(users.decide(path, &mut flight)?);
+    found.warnings.extend(flight.put_in_order());
     let is_positive = |stop: &Stop| stop.loss < 0.0;
     if flight.quantity == Quantity::Level
         && !flight.stops.is_empty()
@@ -103,6 +104,20 @@ impl Flight {
     pub fn new(quantity: Quantity) -> Self {
         let (stops, others) = (Vec::new(), Vec::new());
         Self { quantity, stops, transmitter: None, others, unusable: 0, origin: None }
+    }
+
+    /// Sorts the measurements by time; returns a warning if those of the user looked for were not.
+    fn put_in_order(&mut self) -> Option<String> {
+        let falls = |pair: &&[Stop]| pair[1].t < pair[0].t;
+        let before = self.stops.windows(2).find(falls).map(|pair| pair[0].t);
+        let in_order = |stops: &mut Vec<Stop>| stops.sort_by(|a, b| a.t.total_cmp(&b.t));
+        in_order(&mut self.stops);
+        self.others.iter_mut().for_each(|other| in_order(&mut other.stops));
+        before.map(|before| {
+            format!(
+                "times fall back after {before:.1} s: measurements are taken in the order of time; if the clock began anew there, split the log"
+            )
+        })
     }
 }
 

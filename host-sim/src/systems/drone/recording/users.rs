@@ -91,9 +91,6 @@ impl<'a> Users<'a> {
                 None
             }
         };
-        let in_order = |stops: &mut Vec<Stop>| stops.sort_by(|a, b| a.t.total_cmp(&b.t));
-        in_order(&mut flight.stops);
-        flight.others.iter_mut().for_each(|other| in_order(&mut other.stops));
         Ok(told)
     }
 

@@ -1,4 +1,5 @@
-//! Logs with times of day of which one begins before midnight and another after it.
+//! Logs with times of day of which one begins before midnight and another after it; and tables whose times are not those of the
+//! ranges.
 
 use kestirim_replay::robot::{Course, Sensors};
 
@@ -38,10 +39,53 @@ pub(super) fn align<'a>(
     }
 }
 
+/// The first and the last time of the ranges, or of the differences, µs.
+pub(super) fn span_us(sensors: &Sensors) -> Option<[i64; 2]> {
+    let ranges = sensors.ranges.iter().map(|it| it.time_us);
+    let times = || ranges.clone().chain(sensors.differences.iter().map(|it| it.time_us));
+    Some([times().min()?, times().max()?])
+}
+
+/// A table's times that last this many times as long as the ranges' are in another unit.
+const ANOTHER_UNIT: i64 = 100;
+
+/// A warning if a table beside the ranges can hardly have their clock.
+pub(super) fn doubt<const N: usize>(
+    name: &str,
+    course: &Course<N>,
+    ranges_us: Option<[i64; 2]>,
+) -> Option<String> {
+    let [first, last] = ranges_us?;
+    let (begin, end) = (course.rows().first()?.0, course.rows().last()?.0);
+    let lasts = (end.saturating_sub(begin), last.saturating_sub(first));
+    if lasts.1 > 0 && lasts.0 / lasts.1 >= ANOTHER_UNIT {
+        return Some(format!(
+            "{name}: its times last {} times as long as those of the ranges: if they are in ms or µs, its header must say so (t [ms])",
+            lasts.0 / lasts.1
+        ));
+    }
+    (end < first || begin > last).then(|| {
+        format!(
+            "{name}: it has no time in common with the ranges; look whether both have one clock"
+        )
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use kestirim_replay::robot::{RangeRow, Wheels};
+
+    #[test]
+    fn a_table_of_another_clock_is_told() {
+        let told = |times: [i64; 2]| {
+            let course = Course::new(times.map(|time_us| (time_us, [0.0])).to_vec());
+            doubt("truth", &course, Some([1_000_000, 61_000_000])).unwrap_or_default()
+        };
+        assert_eq!([told([0, 90_000_000]), told([61_000_000, 62_000_000])], ["", ""]);
+        assert!(told([1_000_000_000, 61_000_000_000]).contains("1000 times as long"));
+        assert!(told([62_000_000, 90_000_000]).contains("no time in common"));
+    }
 
     #[test]
     fn what_begins_after_midnight_is_of_the_next_day() {

@@ -11,8 +11,10 @@ use crate::table::{self, Column, Found, Log, Row};
 /// Standard gravity, m/s².
 const GRAVITY: f64 = 9.806_65;
 
-/// The usual range of the time between samples of a robot's sensors (s).
+/// The usual range of the time between samples of a robot's wheels (s).
 const USUAL_STEP_S: [f64; 2] = [5e-4, 2.0];
+/// That of its IMU (s): steps of a whole second are milliseconds.
+const USUAL_STEP_OF_IMU_S: [f64; 2] = [5e-4, 0.5];
 
 /// The columns of an IMU log that are present.
 struct Columns {
@@ -41,7 +43,7 @@ pub fn read_inertial(path: &Path, options: &Options) -> Result<(Vec<Inertial>, F
     let mut samples: Vec<Inertial> = Vec::new();
     let found = table::read_log(
         path,
-        &Log { what: "samples of an IMU", usual_step_s: Some(USUAL_STEP_S), options },
+        &Log { what: "samples of an IMU", usual_step_s: Some(USUAL_STEP_OF_IMU_S), options },
         |header| {
             let [time] = header.require(["t"])?;
             Ok(Columns {
