@@ -207,8 +207,8 @@ enum kestirim_tag_state
   KESTIRIM_TAG_STATE_INITIALISING = 0,
   // Ranges arrive and are consistent.
   KESTIRIM_TAG_STATE_TRACKING = 1,
-  // No range arrived for a second, or for two rounds of the anchors if those take longer: the position is
-  // extrapolated.
+  // No range arrived for a second, or for two rounds of the anchors if those take longer: the position is that
+  // after the last sample, and its standard deviation grows with the time since.
   KESTIRIM_TAG_STATE_COASTING = 2,
   // The position has become useless: the next ranges determine a new one.
   KESTIRIM_TAG_STATE_LOST = 3,

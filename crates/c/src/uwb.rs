@@ -185,8 +185,8 @@ pub enum TagState {
     Initialising = 0,
     /// Ranges arrive and are consistent.
     Tracking = 1,
-    /// No range arrived for a second, or for two rounds of the anchors if those take longer: the position is
-    /// extrapolated.
+    /// No range arrived for a second, or for two rounds of the anchors if those take longer: the position is that
+    /// after the last sample, and its standard deviation grows with the time since.
     Coasting = 2,
     /// The position has become useless: the next ranges determine a new one.
     Lost = 3,

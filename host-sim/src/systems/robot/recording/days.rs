@@ -1,4 +1,4 @@
-//! Logs with times of day of which one begins before midnight and another after it; and tables whose times are not those of the
+//! Logs of which one begins before midnight, or before its counter begins anew, and another after it; and tables whose times are not those of the
 //! ranges.
 
 use kestirim_replay::robot::{Course, Sensors};
@@ -6,8 +6,24 @@ use kestirim_replay::robot::{Course, Sensors};
 /// A day, µs.
 const DAY_US: i64 = 86_400_000_000;
 
-/// By how much times that begin at `first_us` are before those that begin at `reference_us`, in whole days; zero for times of more
-/// than two days, which have a date.
+/// After how long a counter of 32 bits begins anew, µs: of microseconds, and of milliseconds.
+const COUNTERS_US: [i64; 2] = [1 << 32, 1000 << 32];
+/// How near to a counter's end the one log begins, and how soon after it the other, µs.
+const NEAR_US: i64 = 60_000_000;
+
+/// By how much times that begin at `first_us` are before those that begin at `reference_us`: a counter's whole range if one begins
+/// shortly before its end and the other shortly after; else in whole days.
+fn behind_us(reference_us: i64, first_us: i64) -> i64 {
+    let [early, late] = [reference_us.min(first_us), reference_us.max(first_us)];
+    let ends = |end: &i64| (0..NEAR_US).contains(&early) && (end - NEAR_US..*end).contains(&late);
+    let ended = COUNTERS_US.into_iter().find(ends);
+    ended.map_or_else(
+        || days_us(reference_us, first_us),
+        |end| end * (reference_us - first_us).signum(),
+    )
+}
+
+/// The same in whole days; zero for times of more than two days, which have a date.
 fn days_us(reference_us: i64, first_us: i64) -> i64 {
     let is_of_day = |time_us: i64| (0..2 * DAY_US).contains(&time_us);
     if !(is_of_day(reference_us) && is_of_day(first_us)) {
@@ -17,7 +33,7 @@ fn days_us(reference_us: i64, first_us: i64) -> i64 {
     days.round() as i64 * DAY_US
 }
 
-/// Puts the IMU, the wheels and the courses onto the day of the ranges.
+/// Puts the IMU, the wheels and the courses onto the day, or the count, of the ranges.
 pub(super) fn align<'a>(
     sensors: &mut Sensors,
     courses: impl IntoIterator<Item = &'a mut Course<2>>,
@@ -26,7 +42,7 @@ pub(super) fn align<'a>(
     let Some(reference_us) = sensors.ranges.first().map(|it| it.time_us).or(differences) else {
         return;
     };
-    let by_us = |first: Option<i64>| first.map_or(0, |first_us| days_us(reference_us, first_us));
+    let by_us = |first: Option<i64>| first.map_or(0, |first_us| behind_us(reference_us, first_us));
     let by = by_us(sensors.inertial.first().map(|it| it.time_us));
     sensors.inertial.iter_mut().for_each(|it| it.time_us += by);
     let by = by_us(sensors.wheels.first().map(|it| it.time_us));
@@ -75,6 +91,18 @@ pub(super) fn doubt<const N: usize>(
 mod tests {
     use super::*;
     use kestirim_replay::robot::{RangeRow, Wheels};
+
+    #[test]
+    fn what_begins_after_a_counter_has_begun_anew_is_as_much_later() {
+        let end = 1_i64 << 32;
+        assert_eq!(behind_us(end - 2_000_000, 3_000_000), end);
+        assert_eq!(behind_us(3_000_000, end - 2_000_000), -end);
+        assert_eq!(behind_us(1000 * end - 5_000_000, 1_000_000), 1000 * end);
+        // Logs that simply begin at another time.
+        assert_eq!(behind_us(end - 2_000_000, 90_000_000), 0);
+        assert_eq!(behind_us(end - 90_000_000, 3_000_000), 0);
+        assert_eq!(behind_us(end + 2_000_000, 3_000_000), 0);
+    }
 
     #[test]
     fn a_table_of_another_clock_is_told() {
