@@ -12,22 +12,32 @@ struct Known {
     quantity: Option<Quantity>,
     /// The other names: in lower case, without separators between words and without units.
     aliases: &'static [&'static str],
+    /// Whether another name than its own counts only with a unit.
+    needs_unit: bool,
 }
 
 const fn of(quantity: Quantity, name: &'static str, aliases: &'static [&'static str]) -> Known {
-    Known { name, quantity: Some(quantity), aliases }
+    Known { name, quantity: Some(quantity), aliases, needs_unit: false }
 }
 
 const fn named_only(name: &'static str, aliases: &'static [&'static str]) -> Known {
-    Known { name, quantity: None, aliases }
+    Known { name, quantity: None, aliases, needs_unit: false }
+}
+
+/// A column of a flight: without a unit, a pitch may well be in degrees.
+const fn of_flight(
+    quantity: Quantity,
+    name: &'static str,
+    aliases: &'static [&'static str],
+) -> Known {
+    Known { name, quantity: Some(quantity), aliases, needs_unit: true }
 }
 
 /// The columns that readers ask for; [`crate::names`] knows time and the axes of an inertial sensor.
 const KNOWN: &[Known] = &[
-    Known {
-        name: "anchor",
-        quantity: None,
-        aliases: &[
+    named_only(
+        "anchor",
+        &[
             "anchorid",
             "anchorname",
             "anc",
@@ -39,7 +49,7 @@ const KNOWN: &[Known] = &[
             "id",
             "name",
         ],
-    },
+    ),
     of(Quantity::Length, "range", &["range", "distance", "dist", "d", "r"]),
     named_only("anchor_a", &["anchora", "ida", "firstanchor"]),
     named_only("anchor_b", &["anchorb", "idb", "secondanchor"]),
@@ -94,13 +104,12 @@ const KNOWN: &[Known] = &[
         &["vright", "vr", "right", "rightspeed", "speedright", "rightvelocity", "velocityright"],
     ),
     of(Quantity::Length, "track", &["track", "trackwidth", "wheeltrack", "axletrack"]),
-    // Columns of flights have no aliases: a pitch without a unit may well be in degrees.
-    of(Quantity::Inclination, "alpha", &[]),
-    of(Quantity::Rate, "q", &[]),
-    of(Quantity::Speed, "V", &[]),
-    of(Quantity::Inclination, "theta", &[]),
-    of(Quantity::Inclination, "delta_e", &[]),
-    of(Quantity::Share, "delta_t", &[]),
+    of_flight(Quantity::Inclination, "alpha", &["alpha", "aoa", "angleofattack"]),
+    of_flight(Quantity::Rate, "q", &["q", "pitchrate"]),
+    of_flight(Quantity::Speed, "V", &["v", "tas", "airspeed", "trueairspeed"]),
+    of_flight(Quantity::Inclination, "theta", &["theta", "pitch", "pitchangle"]),
+    of_flight(Quantity::Inclination, "delta_e", &["deltae", "elevator"]),
+    of_flight(Quantity::Share, "delta_t", &["deltat", "throttle"]),
 ];
 
 /// The names that options may assign columns and units to, beside time and the axes.
@@ -255,7 +264,8 @@ impl<'a> Heading<'a> {
     fn named(&self, wanted: &str, column: usize) -> Option<Named> {
         let name = &self.names[column];
         if let Some(known) = KNOWN.iter().find(|known| known.name == wanted) {
-            return named(name, known.quantity, known.aliases);
+            let has_unit = |found: &Named| !known.needs_unit || found.unit.is_some();
+            return named(name, known.quantity, known.aliases).filter(has_unit);
         }
         let (own, its) = (meaning(wanted)?, meaning(name)?);
         let same = own.quantity == its.quantity && own.axis == its.axis;
@@ -314,13 +324,27 @@ mod tests {
             ("lon", "lon", None),
             ("left_speed (cm/s)", "v_left", Some("cm/s")),
             ("AccX [g]", "ax", Some("g")),
+            ("alpha [deg]", "alpha", Some("°")),
+            ("q_dps", "q", Some("°/s")),
+            ("pitch_rate [deg/s]", "q", Some("°/s")),
+            ("True Airspeed (m/s)", "V", Some("m/s")),
+            ("elevator_deg", "delta_e", Some("°")),
+            ("throttle [%]", "delta_t", Some("%")),
         ] {
             let place = find(&["other", name], wanted, &options).unwrap();
             let place = place.unwrap_or_else(|| panic!("{name}"));
             assert_eq!(place.column, 1, "{name}");
             assert_eq!(place.unit.map(|unit| unit.name).as_deref(), unit, "{name}");
         }
-        for (name, wanted) in [("T", "t"), ("range_x", "range"), ("xy", "x"), ("lax", "ax")] {
+        for (name, wanted) in [
+            ("T", "t"),
+            ("range_x", "range"),
+            ("xy", "x"),
+            ("lax", "ax"),
+            ("pitch", "theta"),
+            ("ALPHA", "alpha"),
+            ("pitch [m]", "theta"),
+        ] {
             assert_eq!(find(&[name], wanted, &options), Ok(None), "{name}");
         }
     }

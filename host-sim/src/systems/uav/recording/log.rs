@@ -121,7 +121,7 @@ fn measured_columns(header: &Header<'_>, names: &[&str]) -> Result<Vec<(usize, C
         } else if let Some(other) = header.with_unit(name) {
             let found = printable(other);
             return Err(header.error(format!(
-                "expected {name} in the unit of the model (m, s, rad) under this name alone, found {found}"
+                "expected {name} with one of its units, or in that of the model (m, s, rad) under this name alone, found {found}"
             )));
         }
     }
