@@ -118,7 +118,7 @@ impl<T: Scalar> Health<T> {
     const MOST_UPWARDS: f64 = 0.5;
     /// The largest plausible mean of the residual velocity upwards (m/s): a foot lands downwards, and where a stance is found late,
     /// that is what remains. In 26 recorded walks at 200 to 400 Hz the mean of eight is 0.014 at most; a gyroscope that shows 5 % too
-    /// little of the swing leaves 0.05 to 0.25.
+    /// little of the swing leaves 0.04 to 0.25.
     const RISING: f64 = 0.035;
     /// The same at lower sample rates, for each second of the interval (m/s²), since the foot is braked between two samples: 0.04 and
     /// 0.10 m/s at 100 and 50 Hz.

@@ -284,7 +284,7 @@ fn wrong_input_is_refused_with_a_sentence() {
     assert!(named("t,delta_e,delta_t\n0,0,0\n").contains("alpha"));
     assert!(named("t,delta_e,delta_t,q,q\n0,0,0,1,2\n").contains("two"));
     assert!(named("t,delta_e,delta_t,q\n0,0,0,1\n").contains("two samples"));
-    assert!(named("t,delta_e,delta_t,V,q [m]\n0,0,0,9,1\n").contains("found q [m]"));
+    assert!(named("t,delta_e,delta_t,V,q [m]\n0,0,0,9,1\n").contains("q [m]"));
     assert!(named("t,delta_e,delta_t,q\n0,0,0,1\n0,0,0,1\n").contains("line 3"));
     assert!(named("t,delta_e,delta_t,q\n0,0,0,1\n1,0,0,x\n").contains("line 3"));
     assert!(named("t,delta_e,delta_t,q\n0,0,0,1\n1,0,0,1e9\n").contains("line 3"));
