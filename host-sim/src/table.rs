@@ -368,9 +368,8 @@ impl Row<'_> {
     /// # Errors
     /// [`Error::Line`] if the field is not a time, or lies beyond any clock.
     pub fn time_us(&self, column: Column) -> Result<i64, Error> {
-        let field = self.field(column);
-        let counted = || Some(self.table.count(field)? * (column.scale * self.second));
-        let Some(seconds) = self.table.moment(field).or_else(counted) else {
+        let counted = || Some(self.table.count(self.field(column))? * (column.scale * self.second));
+        let Some(seconds) = self.table.moment(self.field(column)).or_else(counted) else {
             let found = printable(&self.text(column));
             return Err(self.line.error(format!("expected a time in column t, found {found}")));
         };

@@ -112,6 +112,11 @@ const KNOWN: &[Known] = &[
     of_flight(Quantity::Share, "delta_t", &["deltat", "throttle"]),
 ];
 
+/// What readers ask for under this name.
+fn known(name: &str) -> Option<&'static Known> {
+    KNOWN.iter().find(|known| known.name == name)
+}
+
 /// The names that options may assign columns and units to, beside time and the axes.
 pub(crate) fn names() -> impl Iterator<Item = (&'static str, Option<Quantity>)> {
     KNOWN.iter().map(|known| (known.name, known.quantity))
@@ -226,7 +231,7 @@ impl<'a> Heading<'a> {
         column: usize,
         named: Option<Unit>,
     ) -> Result<Option<Unit>, Error> {
-        let quantity = match KNOWN.iter().find(|known| known.name == wanted) {
+        let quantity = match known(wanted) {
             Some(known) => known.quantity,
             None => meaning(wanted).map(|meaning| meaning.quantity),
         };
@@ -263,7 +268,7 @@ impl<'a> Heading<'a> {
     /// Whether a column may be the wanted one, and the unit that its name contains.
     fn named(&self, wanted: &str, column: usize) -> Option<Named> {
         let name = &self.names[column];
-        if let Some(known) = KNOWN.iter().find(|known| known.name == wanted) {
+        if let Some(known) = known(wanted) {
             let has_unit = |found: &Named| !known.needs_unit || found.unit.is_some();
             return named(name, known.quantity, known.aliases).filter(has_unit);
         }

@@ -22,7 +22,8 @@ const LARGEST_SQUARE: f64 = 7.0;
 const GROSS_SQUARE: f64 = 8.0;
 /// The largest mean of the squared standardised residuals in the first epochs, which hold fewer values.
 const FIRST_SQUARE: f64 = 20.0;
-/// The largest share of rejected observations of one epoch, and in the first epochs: beyond it, which ones are wrong is a guess, whatever the epochs before.
+/// The largest share of rejected observations of one epoch, and in the first epochs: beyond it, which ones are wrong is a guess, whatever
+/// the epochs before.
 const EPOCH_SHARE: f64 = 0.30;
 /// The upper limit on one squared residual, so that a single outlier does not condemn all.
 const LARGEST_SINGLE: f64 = 100.0;

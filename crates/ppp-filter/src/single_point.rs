@@ -117,7 +117,7 @@ pub fn single_point<const N: usize>(
     if !GROUND.contains(&position.norm()) {
         return Err(Error::Contradictory);
     }
-    Ok(found.solution(time, position))
+    Ok(found.solution(time, position, scale))
 }
 
 /// The linearised code of one satellite.
@@ -251,7 +251,8 @@ impl<const N: usize> Epoch<N> {
         if spare == 0 { 1.0 } else { (squares.sum::<f64>() / spare as f64).max(1.0) }
     }
 
-    fn solution(&self, time: GpsTime, position: Vector3<f64>) -> Solution<N> {
+    /// The solution, if the residuals show codes this many times as noisy as configured.
+    fn solution(&self, time: GpsTime, position: Vector3<f64>, scale: f64) -> Solution<N> {
         let estimate = &self.estimate;
         let formal = Matrix3::from_fn(|i, j| estimate.covariance.get(i, j).unwrap_or(0.0));
         let covariance = formal * self.variance_factor();
@@ -268,7 +269,7 @@ impl<const N: usize> Epoch<N> {
             });
         let contradiction = consistency
             .contradiction()
-            .or_else(|| (self.residual_scale() >= NOISIEST).then_some(Contradiction::Residuals));
+            .or_else(|| (scale >= NOISIEST).then_some(Contradiction::Residuals));
         let heard = self.decisions.iter().filter(|code| code.weight > 0.0).count();
         Solution {
             time,

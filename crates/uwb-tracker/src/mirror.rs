@@ -112,6 +112,18 @@ pub(crate) fn across<T: Scalar, const D: usize>(
     Some(beside + beside)
 }
 
+/// [`across`], unless the mirror image is outside of the room.
+pub(crate) fn across_in_room<T: Scalar, const D: usize>(
+    mirror: &Mirror<D>,
+    config: &Config<T>,
+    links: &[Link<T>],
+    position: &SVector<T, D>,
+) -> Option<SVector<T, D>> {
+    let across = across(mirror, links, position)?;
+    let (other, margin) = (position - across, T::from_f64(ROOM_MARGIN));
+    config.room.is_none_or(|room| room.contains(&other, margin)).then_some(across)
+}
+
 /// Whether a range with this innovation (m) and variance excludes the mirror image.
 pub(crate) fn tells<T: Scalar, const D: usize>(
     across: &SVector<T, D>,

@@ -148,9 +148,7 @@ impl<T: Scalar, const D: usize, const N: usize, const A: usize> Tracker<T, D, N,
 
     /// Vector from the mirror image to the position, m; `None` without a mirror image inside the room.
     pub(crate) fn across_in_room(&self) -> Option<SVector<T, D>> {
-        let across = self.across()?;
-        let (other, margin) = (self.position()? - across, T::from_f64(mirror::ROOM_MARGIN));
-        self.config.room.is_none_or(|room| room.contains(&other, margin)).then_some(across)
+        mirror::across_in_room(self.mirror.as_ref()?, &self.config, &self.links, &self.position()?)
     }
 
     /// Vector from the mirror image to the position, m, regardless of the room.

@@ -166,10 +166,7 @@ impl<T: Scalar, const A: usize> WheelTracker<T, A> {
     /// Vector from the mirror image behind the line of all anchors to the position, m; `None` unless they lie in one line and the
     /// room has both sides.
     fn across_in_room(&self) -> Option<SVector<T, 2>> {
-        let position = self.position()?;
-        let across = mirror::across(self.flat.as_ref()?, &self.links, &position)?;
-        let (other, margin) = (position - across, T::from_f64(mirror::ROOM_MARGIN));
-        self.config.room.is_none_or(|room| room.contains(&other, margin)).then_some(across)
+        mirror::across_in_room(self.flat.as_ref()?, &self.config, &self.links, &self.position()?)
     }
 
     /// Sets the tag's height, m.

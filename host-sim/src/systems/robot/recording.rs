@@ -2,7 +2,7 @@
 
 pub mod anchors;
 pub mod calibration;
-mod days;
+mod clocks;
 pub mod motion;
 pub mod points;
 pub mod ranges;
@@ -186,11 +186,11 @@ impl Recording {
         if files.one("imu").is_some() && sensors.inertial.is_empty() {
             self.warn("the IMU has no columns ax,ay,az or lax,lay,laz: it is not used");
         }
-        days::align(&mut sensors, &mut truth);
-        let span = days::span_us(&sensors);
-        let of_truth = truth.as_ref().and_then(|truth| days::doubt("truth", truth, span));
+        clocks::align(&mut sensors, &mut truth);
+        let span = clocks::span_us(&sensors);
+        let of_truth = truth.as_ref().and_then(|truth| clocks::doubt("truth", truth, span));
         let height = sensors.height.as_ref();
-        let of_height = height.and_then(|height| days::doubt("height", height, span));
+        let of_height = height.and_then(|height| clocks::doubt("height", height, span));
         self.warnings.extend(of_truth.into_iter().chain(of_height));
         self.warn_of_left_out(unlisted, without);
         if let Some(order) = sensors.put_in_order() {

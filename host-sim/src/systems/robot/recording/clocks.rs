@@ -1,5 +1,5 @@
-//! Logs of which one begins before midnight, or before its counter begins anew, and another after it; and tables whose times are not those of the
-//! ranges.
+//! Logs of one recording whose clocks differ: one begins before midnight, or before its counter begins anew, and another after it; or
+//! a table's times are not those of the ranges.
 
 use kestirim_replay::robot::{Course, Sensors};
 
@@ -73,11 +73,10 @@ pub(super) fn doubt<const N: usize>(
 ) -> Option<String> {
     let [first, last] = ranges_us?;
     let (begin, end) = (course.rows().first()?.0, course.rows().last()?.0);
-    let lasts = (end.saturating_sub(begin), last.saturating_sub(first));
-    if lasts.1 > 0 && lasts.0 / lasts.1 >= ANOTHER_UNIT {
+    let times = end.saturating_sub(begin).checked_div(last.saturating_sub(first));
+    if let Some(times) = times.filter(|times| *times >= ANOTHER_UNIT) {
         return Some(format!(
-            "{name}: its times last {} times as long as those of the ranges: if they are in ms or µs, its header must say so (t [ms])",
-            lasts.0 / lasts.1
+            "{name}: its times last {times} times as long as those of the ranges: if they are in ms or µs, its header must say so (t [ms])"
         ));
     }
     (end < first || begin > last).then(|| {
