@@ -181,7 +181,7 @@ impl_scalar_for_float!(
 impl_scalar_for_float!(
     f64,
     HAS_DOUBLE,
-    libm::sqrt,
+    kestirim_arithmetic::sqrt_f64,
     double::root,
     libm::hypot,
     libm::sincos,

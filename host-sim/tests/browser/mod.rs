@@ -14,6 +14,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 
+use crate::program;
 use devtools::Browser;
 
 /// The timeout of waiting for a condition on a page.
@@ -165,16 +166,17 @@ impl Page {
         std::thread::sleep(Duration::from_millis(500));
     }
 
-    /// Saves a screenshot of the whole page.
-    pub(crate) fn screenshot(&self, name: &str) -> PathBuf {
+    /// Saves a screenshot of the whole page; in the short form (`KESTIRIM_SHORT=1`) only of wide and light ones.
+    pub(crate) fn screenshot(&self, name: &str) {
+        self.unfold();
+        if program::is_short() && (self.width < 500 || name.contains("dark")) {
+            return;
+        }
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("screenshots");
         fs::create_dir_all(&folder).expect("a folder for screenshots");
-        self.unfold();
         let image = self.call("Page.captureScreenshot", &json!({ "format": "png" }));
         let image = STANDARD.decode(image["data"].as_str().expect("an image")).expect("base64");
-        let path = folder.join(name);
-        fs::write(&path, image).expect("the folder can be written");
-        path
+        fs::write(folder.join(name), image).expect("the folder can be written");
     }
 }
 

@@ -4,7 +4,8 @@
 //! Everything that a crate offers (`tests/firmware/surface`) is called with random numbers, including NaN, infinities
 //! and the limits of fixed point. Tests are built with overflow checks.
 //!
-//! `KESTIRIM_SEEDS` sets the number of calls, a seventh of which are made of `kalman`; a failure names its seed.
+//! `KESTIRIM_SEEDS` sets the number of calls, a seventh of which are made of `kalman` and a fifth of `user_locator`; a failure
+//! names its seed.
 
 use std::env;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -24,6 +25,8 @@ const TAME: [u64; 4] = [1_000_000, 100, 20, 3];
 /// `kalman`'s functions are called once in this many rounds: where there is no steady state, its steady-state gain
 /// takes a hundred thousand steps.
 const SEEDS_OF_KALMAN: u64 = 7;
+/// Those of `user_locator` once in this many: each search of open ground makes thousands of fits, as this program is not optimised.
+const SEEDS_OF_USER_LOCATOR: u64 = 5;
 
 fn seeds() -> u64 {
     let told = env::var("KESTIRIM_SEEDS");
@@ -54,10 +57,15 @@ macro_rules! test_each {
 test_each!(
     adaptive_kalman air_to_ground arithmetic attitude gnss_message gnss_ppp health imu_calibration integer_ambiguity luenberger luenberger_f64
     observer_design particle_filter pedestrian ppp_filter robust_kalman scalar scalar_f64 snapshot telemetry uav_estimator
-    uav_longitudinal user_locator uwb_ranging uwb_tracker
+    uav_longitudinal uwb_ranging uwb_tracker
 );
 
 #[test]
 fn kalman() {
     run(surface::kalman::run, seeds().div_ceil(SEEDS_OF_KALMAN));
+}
+
+#[test]
+fn user_locator() {
+    run(surface::user_locator::run, seeds().div_ceil(SEEDS_OF_USER_LOCATOR));
 }

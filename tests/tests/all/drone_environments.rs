@@ -85,7 +85,7 @@ fn with_more_shadowing_than_the_environments_a_place_is_less_sure_and_not_wrong(
                 let Estimate { place: [x, y], sd_m, .. } = found(&stops, environment);
                 [x.hypot(y), x.hypot(y) / sd_m]
             };
-            let flights = if is_short() { 8 } else { 24 };
+            let flights = if is_short() { 5 } else { 24 };
             let places: Vec<[f64; 2]> = (0..flights).map(place).collect();
             let [errors, ratios] =
                 [0, 1].map(|of| places.iter().map(|it| it[of]).collect::<Vec<_>>());

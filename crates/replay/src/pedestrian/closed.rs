@@ -151,6 +151,3 @@ impl Path {
         self.walked(rate, scale).enumerate().map(after).collect()
     }
 }
-
-#[cfg(test)]
-mod tests;

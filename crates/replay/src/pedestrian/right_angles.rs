@@ -212,6 +212,3 @@ impl Walls {
         legs.iter().map(|leg| (self.densities(leg).iter().sum::<f64>() / anywhere).ln()).sum()
     }
 }
-
-#[cfg(test)]
-mod tests;

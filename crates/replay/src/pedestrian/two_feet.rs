@@ -122,6 +122,3 @@ impl Walk {
         feet
     }
 }
-
-#[cfg(test)]
-mod tests;

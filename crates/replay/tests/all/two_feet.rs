@@ -1,11 +1,13 @@
+//! Both feet of a walk.
+
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
 
 use nalgebra::{Rotation2, Vector2};
 
-use super::*;
-use crate::pedestrian::{SensorClass, Stride, TrackPoint};
+use kestirim_pedestrian::PathUncertainty;
+use kestirim_replay::pedestrian::{SensorClass, Stride, TrackPoint, Walk};
 
 /// The number of steps of both feet, one per second, each a stride of 1.3 m.
 const STEPS: u32 = 160;
@@ -242,10 +244,11 @@ fn only_walks_that_are_not_corrected_are_joined() {
     let mut turned = left.clone();
     turned.turn_back(0.001);
     assert!(turned.join_other_foot(&right).is_err_and(|why| why.contains("magnetometer")));
-    left.join_other_foot(&right).expect("two feet");
+    let feet = left.join_other_foot(&right).expect("two feet");
     assert!(right.join_other_foot(&left).is_err_and(|why| why.contains("joined before")));
     assert!(left.join_other_foot(&right).is_err_and(|why| why.contains("joined before")));
-    // The remaining errors count when the walk is closed.
-    let (alone, left) = (PathErrors::of(&right), PathErrors::of(&left));
-    assert!(left.rate < 0.8 * alone.rate && left.stride < 0.9 * alone.stride, "{left:?}");
+    // Two feet leave smaller errors than one.
+    let class = kestirim_pedestrian::SensorClass::Consumer;
+    assert!(feet.rate_sigma < 0.8 * class.heading_rate::<f64>(), "{feet:?}");
+    assert!(feet.stride_sigma < 0.9 * PathUncertainty::<f64>::FOOTPRINT, "{feet:?}");
 }

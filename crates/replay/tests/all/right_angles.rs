@@ -1,9 +1,12 @@
-use super::*;
-use crate::pedestrian::{SensorClass, Stride, TrackPoint};
+//! Walks among walls at right angles.
+
+use kestirim_replay::pedestrian::{SensorClass, Stride, TrackPoint, Walk};
 use rand_distr::{Distribution, Normal, Uniform};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
 
+/// Standard deviation of a leg's direction from that of the walls, rad.
+const ALONG: f64 = 0.026;
 /// A drift of two standard deviations of the class, rad/s.
 const DRIFT: f64 = 0.004;
 

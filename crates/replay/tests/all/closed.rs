@@ -1,6 +1,10 @@
-use super::*;
-use crate::pedestrian::{SensorClass, Stride, TrackPoint};
+//! Rounds that end where they began.
+
+use kestirim_replay::pedestrian::{SensorClass, Stride, TrackPoint, Walk};
 use rand_distr::{Distribution, StandardNormal};
+
+/// The distance within which people put a foot back, m.
+const PUT_BACK: f64 = 0.1;
 
 /// A round of 120 strides, one per second and 0.8 m long, with a heading drift, a scale error and a rising height.
 fn round(rate: f64, scale: f64, rise: f64) -> Walk {
