@@ -1,6 +1,6 @@
 //! How well the observations of the last epochs agree with the solution.
 
-use crate::Contradiction;
+use crate::{Contradiction, Motion};
 use kestirim_robust_kalman::{Decision, Reason};
 
 /// The weight of an epoch in the sums decays by this factor per epoch: a memory of ten epochs.
@@ -22,9 +22,11 @@ const LARGEST_SQUARE: f64 = 7.0;
 const GROSS_SQUARE: f64 = 8.0;
 /// The largest mean of the squared standardised residuals in the first epochs, which hold fewer values.
 const FIRST_SQUARE: f64 = 20.0;
-/// The largest share of rejected observations of one epoch, and in the first epochs: beyond it, which ones are wrong is a guess, whatever
+/// The largest share of rejected observations of one epoch, or of its phases, and in the first epochs: beyond it, which ones are wrong is a guess, whatever
 /// the epochs before.
 const EPOCH_SHARE: f64 = 0.30;
+/// The unknowns of a moving receiver in each epoch: its coordinates and its clock.
+const UNKNOWNS: f64 = 4.0;
 /// The upper limit on one squared residual, so that a single outlier does not condemn all.
 const LARGEST_SINGLE: f64 = 100.0;
 
@@ -45,31 +47,69 @@ pub(crate) struct Consistency {
     is_split: bool,
 }
 
+/// Whether it is a guess which `wrong` of `all` phases of a moving receiver are wrong: as few others may agree with each other by
+/// chance. Four of them determine the place and the clock, and each wrong one takes another that finds it.
+pub(crate) fn is_a_guess(wrong: f64, all: f64) -> bool {
+    wrong > 1.0 && all - wrong <= UNKNOWNS + wrong
+}
+
+/// The observations of one epoch that were judged, and how many of them were rejected.
+#[derive(Clone, Copy)]
+struct Judged {
+    judged: f64,
+    rejected: f64,
+}
+
+impl Judged {
+    fn and(self, other: Self) -> Self {
+        Self { judged: self.judged + other.judged, rejected: self.rejected + other.rejected }
+    }
+
+    fn is_split(self) -> bool {
+        self.rejected > EPOCH_SHARE * self.judged
+    }
+}
+
 impl Consistency {
-    /// Updates the sums with the decisions about an epoch's observations.
-    pub(crate) fn update<'a>(&mut self, decisions: impl Iterator<Item = &'a Decision<f64>>) {
+    /// Updates the sums with the decisions about an epoch's codes and phases.
+    pub(crate) fn update<'a>(
+        &mut self,
+        codes: impl Iterator<Item = &'a Decision<f64>>,
+        phases: impl Iterator<Item = &'a Decision<f64>>,
+        motion: Motion,
+    ) {
         self.epochs = self.epochs.saturating_add(1);
         for sum in [&mut self.judged, &mut self.rejected, &mut self.squares] {
             *sum *= KEPT;
         }
-        let (mut judged, mut rejected) = (0.0, 0.0);
+        let (codes, phases) = (self.add(codes), self.add(phases));
+        // Codes reject no phase: how many of the phases are wrong shows in the phases alone.
+        self.is_split = codes.and(phases).is_split()
+            || match motion {
+                Motion::Static => phases.is_split(),
+                Motion::Kinematic { .. } => is_a_guess(phases.rejected, phases.judged),
+            };
+        let longer = |epochs: u8, is: bool| if is { epochs.saturating_add(1) } else { 0 };
+        self.rejecting = longer(self.rejecting, self.rejects(LARGEST_SHARE));
+        self.loud = longer(self.loud, self.exceeds(LARGEST_SQUARE));
+    }
+
+    fn add<'a>(&mut self, decisions: impl Iterator<Item = &'a Decision<f64>>) -> Judged {
+        let mut all = Judged { judged: 0.0, rejected: 0.0 };
         for decision in decisions {
             match decision.reason {
                 Reason::NoRedundancy | Reason::TooFew => continue,
-                Reason::Rejected => rejected += 1.0,
+                Reason::Rejected => all.rejected += 1.0,
                 _ => {
                     let square = decision.standardised * decision.standardised;
                     self.squares += square.min(LARGEST_SINGLE);
                 }
             }
-            judged += 1.0;
+            all.judged += 1.0;
         }
-        self.is_split = rejected > EPOCH_SHARE * judged;
-        self.judged += judged;
-        self.rejected += rejected;
-        let longer = |epochs: u8, is: bool| if is { epochs.saturating_add(1) } else { 0 };
-        self.rejecting = longer(self.rejecting, self.rejects(LARGEST_SHARE));
-        self.loud = longer(self.loud, self.exceeds(LARGEST_SQUARE));
+        self.judged += all.judged;
+        self.rejected += all.rejected;
+        all
     }
 
     /// The reason why the observations contradict the solution, or each other: too many are rejected, or the accepted
@@ -106,7 +146,7 @@ mod tests {
 
     fn after(epochs: usize, decisions: &[Decision<f64>]) -> Consistency {
         let mut consistency = Consistency::default();
-        (0..epochs).for_each(|_| consistency.update(decisions.iter()));
+        (0..epochs).for_each(|_| consistency.update(decisions.iter(), [].iter(), Motion::Static));
         consistency
     }
 
@@ -139,14 +179,38 @@ mod tests {
         let mut consistency = after(100, &[decision(Reason::Agrees, 1.0); 20]);
         let mut epoch = [decision(Reason::Agrees, 1.0); 20];
         epoch[..6].fill(decision(Reason::Rejected, 1e3));
-        consistency.update(epoch.iter());
+        consistency.update(epoch.iter(), [].iter(), Motion::Static);
         assert_eq!(consistency.contradiction(), None);
         let mut consistency = after(100, &[decision(Reason::Agrees, 1.0); 20]);
         epoch[6] = decision(Reason::Rejected, 1e3);
-        consistency.update(epoch.iter());
+        consistency.update(epoch.iter(), [].iter(), Motion::Static);
         assert_eq!(consistency.contradiction(), Some(Contradiction::Rejections));
-        consistency.update([decision(Reason::Agrees, 1.0); 20].iter());
+        consistency.update([decision(Reason::Agrees, 1.0); 20].iter(), [].iter(), Motion::Static);
         assert_eq!(consistency.contradiction(), None);
+    }
+
+    #[test]
+    fn rejected_phases_contradict_whatever_the_codes_say() {
+        const MOVES: Motion = Motion::Kinematic { process_noise: 100.0 };
+        let contradiction = |rejected: usize, all: usize, motion| {
+            let codes = [decision(Reason::Agrees, 1.0); 12];
+            let mut phases = codes;
+            phases[..rejected].fill(decision(Reason::Rejected, 1e3));
+            let mut consistency = after(100, &codes);
+            consistency.update(codes.iter(), phases[..all].iter(), motion);
+            consistency.contradiction()
+        };
+        // Three tenths of a receiver at rest, whose place is known.
+        assert_eq!(contradiction(3, 10, Motion::Static), None);
+        assert_eq!(contradiction(4, 10, Motion::Static), Some(Contradiction::Rejections));
+        // Of a moving one, as many as other phases could find.
+        for (rejected, all) in [(1, 6), (1, 5), (2, 9), (3, 11)] {
+            assert_eq!(contradiction(rejected, all, MOVES), None, "{rejected} of {all}");
+        }
+        for (rejected, all) in [(2, 8), (3, 10), (4, 12)] {
+            let found = contradiction(rejected, all, MOVES);
+            assert_eq!(found, Some(Contradiction::Rejections), "{rejected} of {all}");
+        }
     }
 
     #[test]
@@ -154,7 +218,11 @@ mod tests {
         let mut consistency = after(100, &[decision(Reason::Rejected, 1e3); 20]);
         assert!(consistency.contradiction().is_some());
         for _ in 0..30 {
-            consistency.update([decision(Reason::Agrees, 1.0); 20].iter());
+            consistency.update(
+                [decision(Reason::Agrees, 1.0); 20].iter(),
+                [].iter(),
+                Motion::Static,
+            );
         }
         assert_eq!(consistency.contradiction(), None);
         // Without redundancy no observation is judged.

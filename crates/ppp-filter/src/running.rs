@@ -5,7 +5,7 @@ mod satellites;
 use crate::channel::Channel;
 use crate::clock_jump::ClockJump;
 use crate::collected::collected;
-use crate::consistency::Consistency;
+use crate::consistency::{Consistency, is_a_guess};
 use crate::displacement::{Change, Displacement};
 use crate::line::{Line, Row};
 use crate::median::median;
@@ -209,21 +209,38 @@ impl<const N: usize> Running<N> {
             return Err(Error::TooFewSatellites);
         }
         self.set_clocks(&lines, known)?;
+        self.doubt(&mut lines, config.motion);
         for (_, line) in lines.iter().filter(|(_, line)| line.slipped.is_some()) {
             let ambiguity = line.phase - line.code;
             self.estimate.reset_at(line.state, ambiguity, AMBIGUITY_VARIANCE)?;
         }
-        let contradicted = |line: &&Line| line.slipped == Some(Slipped::Contradicted);
-        let anew = lines.iter().map(|(_, line)| line).filter(contradicted).count();
-        self.rest.restart(anew, lines.len());
         if matches!(config.motion, Motion::Static) {
             self.follow_displacement(&lines)?;
         }
         let mut decisions = collected(lines.iter().map(|_| [Decision::NONE; 2]));
         self.settle(receiver, &mut site, &mut lines, &mut decisions, config)?;
         self.monitor(&lines, &decisions, config);
-        self.consistency.update(decisions.as_flattened().iter());
+        let (codes, phases) =
+            (decisions.iter().map(|[code, _]| code), decisions.iter().map(|[_, phase]| phase));
+        self.consistency.update(codes, phases, config.motion);
         Ok(self.solution(&site, &lines, &decisions, config))
+    }
+
+    /// Draws the conclusion from ambiguities that are reset because their phases contradict the place. Of a receiver at rest, the
+    /// place is wrong if they are most of all. Of a moving one, the others may be the wrong ones, if it is a guess: all are reset.
+    fn doubt(&mut self, lines: &mut Lines<'_, '_, N>, motion: Motion) {
+        let contradicted = |line: &&Line| line.slipped == Some(Slipped::Contradicted);
+        let anew = lines.iter().map(|(_, line)| line).filter(contradicted).count();
+        if matches!(motion, Motion::Static) || !is_a_guess(anew as f64, lines.len() as f64) {
+            self.rest.restart(anew, lines.len());
+            return;
+        }
+        for (_, line) in lines.iter_mut().filter(|(_, line)| line.slipped.is_none()) {
+            line.slipped = Some(Slipped::Contradicted);
+            if let Some(Some(channel)) = self.channels.get_mut(line.state) {
+                channel.monitor.begin();
+            }
+        }
     }
 
     /// Releases the position if the phases show that a receiver that should be at rest has moved. The ambiguities are

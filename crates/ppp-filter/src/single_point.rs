@@ -7,7 +7,7 @@ use crate::median::median;
 use crate::running::GROUND;
 use crate::start::code_position;
 use crate::{
-    Config, Contradiction, Error, Health, SatelliteObservation, SatelliteReport, Solution,
+    Config, Contradiction, Error, Health, Motion, SatelliteObservation, SatelliteReport, Solution,
 };
 use heapless::Vec;
 use kestirim_gnss_ppp::constants::SPEED_OF_LIGHT;
@@ -257,7 +257,7 @@ impl<const N: usize> Epoch<N> {
         let formal = Matrix3::from_fn(|i, j| estimate.covariance.get(i, j).unwrap_or(0.0));
         let covariance = formal * self.variance_factor();
         let mut consistency = Consistency::default();
-        consistency.update(self.decisions.iter());
+        consistency.update(self.decisions.iter(), [].iter(), Motion::Static);
         let rotation = Geodetic::from_ecef(&position).enu_from_ecef();
         let satellites =
             self.lines.iter().zip(&self.decisions).map(|(line, code)| SatelliteReport {

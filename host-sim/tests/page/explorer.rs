@@ -25,9 +25,11 @@ fn every_system_is_explored_at_both_widths() {
             let top = top.as_f64().expect("a number");
             assert!(top < 844.0, "{system}: the first figure begins at {top} px");
             page.screenshot(&format!("explorer-{system}-{width}.png"));
-            press_buttons(&page);
-            page.evaluate("document.getElementById('theme').click()");
-            page.screenshot(&format!("explorer-{system}-dark-{width}.png"));
+            if systems().contains(&system) {
+                press_buttons(&page);
+                page.evaluate("document.getElementById('theme').click()");
+                page.screenshot(&format!("explorer-{system}-dark-{width}.png"));
+            }
             assert_quiet(&page, server.place());
         }
     }
