@@ -296,6 +296,14 @@ fn no_recording_is_lost(count: u32) {
     }
     seen.sort_unstable();
     assert_eq!(seen, (0..count).collect::<Vec<_>>());
+    // Where no recording has a result, that is a failure, and the reason of the first is told.
+    let broken = ["replay", "drone", "--logs", "0/flight-*10.csv", "--out", "none.csv"];
+    let told = refusal(folder, &broken);
+    assert!(
+        told.contains("no recording has a result") && told.contains("flight-00010.csv"),
+        "{told}"
+    );
+    assert!(folder.join("none.csv").exists());
     // A recording replayed by itself has the same report.
     let alone = by(&["--log", "7/flight-00007.csv", "--json"]);
     let alone: serde_json::Value = serde_json::from_str(&alone).expect("an object");

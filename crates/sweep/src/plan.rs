@@ -74,7 +74,7 @@ pub struct Logs {
     /// Their paths in order, relative to the plan's folder.
     pub paths: Vec<PathBuf>,
     /// Other files: paths by the name of their option, relative to the plan's folder. `{dir}` stands for the folder of
-    /// the recording, `{stem}` for its name without the extension.
+    /// the recording, `{stem}` for its name without the extension, also without one before `.gz`.
     pub files: BTreeMap<String, Vec<String>>,
 }
 
@@ -83,7 +83,12 @@ impl Logs {
     pub fn of(&self, path: &Path) -> Vec<(&str, Vec<PathBuf>)> {
         let dir = path.parent().filter(|dir| !dir.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let dir = dir.to_string_lossy();
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let unpacked = if path.extension().is_some_and(|it| it == "gz") {
+            path.with_extension("")
+        } else {
+            path.to_owned()
+        };
+        let stem = unpacked.file_stem().unwrap_or_default().to_string_lossy();
         let named =
             |text: &String| PathBuf::from(text.replace("{dir}", &dir).replace("{stem}", &stem));
         self.files
@@ -344,6 +349,9 @@ mod tests {
         assert_eq!(logs.files["map"], ["m"]);
         let files = BTreeMap::from([("map".to_owned(), vec!["{dir}/{stem}.map".to_owned()])]);
         let logs = Logs { files, ..logs };
-        assert_eq!(logs.of(Path::new("a/one.csv")), [("map", vec![PathBuf::from("a/one.map")])]);
+        for recording in ["a/one.csv", "a/one.csv.gz"] {
+            let map = PathBuf::from("a/one.map");
+            assert_eq!(logs.of(Path::new(recording)), [("map", vec![map])], "{recording}");
+        }
     }
 }

@@ -149,7 +149,21 @@ pub(super) fn run(
     let lines = lines.collect::<Vec<_>>().concat();
     bar.finish_and_clear();
     write(out, system, &lines, Input::all(inputs, Path::new(""))?)?;
-    output::print(&archive::counts(&lines))
+    conclude(&lines)
+}
+
+/// Prints how many recordings are in each state.
+///
+/// # Errors
+/// No recording has a result: what the first lacks is most likely what all lack.
+pub(super) fn conclude(lines: &[Line]) -> Result<(), Error> {
+    output::print(&archive::counts(lines))?;
+    match lines.first() {
+        Some(first) if lines.iter().all(|line| !line.error.is_empty()) => {
+            Err(Error::Usage(format!("no recording has a result; the first: {}", first.error)))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Writes a table together with a description of its origin.

@@ -135,6 +135,6 @@ impl Together {
         if let Some(out) = &self.out {
             archive::write(out, system, &lines, merge.tail.inputs.clone())?;
         }
-        output::print(&kestirim_sweep::archive::counts(&lines))
+        archive::conclude(&lines)
     }
 }

@@ -168,9 +168,6 @@ pub(crate) fn flight_with(chance: &mut Chance, drone: impl Fn([f64; 3]) -> f64) 
     Flight { stops, headings, corners, truth }
 }
 
-/// The largest number of measurements of a search: one for all tests, as each is compiled for all kinds of vectors.
-pub(crate) const MOST: usize = 120;
-
 /// The error, σ, and whether the 90 % region contains the transmitter.
 pub(crate) fn find<T: Scalar, const L: usize>(
     flight: &Flight,
@@ -178,7 +175,7 @@ pub(crate) fn find<T: Scalar, const L: usize>(
 ) -> Result<(f64, f64, bool), Error> {
     let number = |place: [f64; 2]| place.map(T::from_f64);
     let area = Area::<T, 4>::new(&flight.corners.map(number))?;
-    let mut search = GroundSearch::<T, MOST, 4>::new(OpenGround::new(None), area);
+    let mut search = GroundSearch::<T, 120, 4>::new(OpenGround::new(None), area);
     for (index, &(place, height, level)) in flight.stops.iter().enumerate() {
         let (height, loss) = (T::from_f64(height), T::from_f64(-level));
         let measurement = Measurement::new(number(place), height, loss)?;
@@ -258,20 +255,20 @@ fn fixed_point_finds_what_floats_do() {
 #[test]
 fn nowhere_is_told_and_hovering_is_one_place() -> Result<(), Error> {
     let sliver = Area::<f64, 3>::new(&[[0.0, 0.0], [1000.0, 1000.0], [1000.0, 1000.001]])?;
-    let mut search = GroundSearch::<f64, MOST, 3>::new(OpenGround::new(None), sliver.clone());
+    let mut search = GroundSearch::<f64, 40, 3>::new(OpenGround::new(None), sliver.clone());
     for _ in 0..100 {
         search.measure(&Measurement::new([1.0, 2.0], 40.0, 60.0)?);
     }
     assert_eq!(search.measurements().len(), 1);
     assert_eq!(search.area(), &sliver);
-    let nowhere = search.estimate::<200>().err();
+    let nowhere = search.estimate::<20>().err();
     assert_eq!(nowhere, Some(Error::Filter(FilterError::Degenerate)));
     let square = Area::<f64, 4>::new(&[[0.0, 0.0], [400.0, 0.0], [400.0, 400.0], [0.0, 400.0]])?;
-    let mut search = GroundSearch::<f64, MOST, 4>::new(OpenGround::new(None), square);
-    let all = search.estimate::<200>()?;
+    let mut search = GroundSearch::<f64, 40, 4>::new(OpenGround::new(None), square);
+    let all = search.estimate::<100>()?;
     assert!(all.sigma > 140.0, "without a measurement it may be anywhere: {}", all.sigma);
     search.measure(&Measurement::new([1.0, 2.0], 40.0, 60.0)?);
-    let found = search.estimate::<200>()?;
+    let found = search.estimate::<100>()?;
     assert!(search.health(&found) == Health::GOOD && found.sigma > 50.0);
     assert!(!search.credible(&found, [500.0, 0.0], 0.9), "outside of the area");
     Ok(())

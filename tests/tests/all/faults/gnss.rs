@@ -312,6 +312,47 @@ fn replay(day: &Day, clocks: &Path, mode: &str) -> Result<(Answer, Option<Farthe
     Ok((answer, farthest.as_ref().map(Farthest::of)))
 }
 
+/// Satellites of a moving receiver that slip by the same cycles of L1 and L2 at once, which changes the difference of the carriers by
+/// less than 3 cm: between so few others, which of them slipped may be a guess. What goes astray is told.
+#[test]
+fn satellites_that_slip_together() -> Result<()> {
+    let Some(folder) = folder_of("gnss") else { return Ok(()) };
+    let day = Day::read(&folder)?;
+    let clocks = folder.join("esbc2020177/grg177_gps.clk.gz");
+    let slips = [(2, [5.0, 4.0]), (2, [4.0, 3.0]), (2, [9.0, 7.0]), (3, [5.0, 4.0])];
+    let starts = (0..13).map(|k| 7_200.0 + 6_000.0 * f64::from(k));
+    let cases: Vec<_> = starts.flat_map(|start| slips.map(|slip| (start, slip))).collect();
+    let astray = |&(start, (count, cycles)): &(f64, (usize, [f64; 2]))| {
+        let mut day = day.clone();
+        day.epochs.retain(|epoch| (start - 7_200.0..start + 1_800.0).contains(&epoch.second));
+        let mut slipping = Vec::new();
+        for epoch in day.epochs.iter_mut().filter(|epoch| epoch.second >= start) {
+            if slipping.is_empty() {
+                let some = (start as usize / 6_000) % 4;
+                let seen = epoch.observed.iter().map(|(satellite, _)| satellite.clone());
+                slipping = seen.skip(some).step_by(3).take(count).collect();
+            }
+            for (satellite, values) in &mut epoch.observed {
+                if slipping.contains(satellite) {
+                    values[1] = values[1].map(|phase| phase + cycles[0]);
+                    values[3] = values[3].map(|phase| phase + cycles[1]);
+                }
+            }
+        }
+        let (answer, farthest) = replay(&day, &clocks, "kinematic")?;
+        let beyond = farthest.map_or(0, |it| it.beyond);
+        let told = format!(
+            "{start} s, {count} by {cycles:?}: {beyond} epochs beyond 10 σ, {}",
+            answer.told
+        );
+        Ok((beyond > 0 && answer.is_good).then_some(told))
+    };
+    let astray = cases.par_iter().map(astray).collect::<Result<Vec<_>>>()?;
+    let astray: Vec<_> = astray.into_iter().flatten().collect();
+    assert!(astray.is_empty(), "{} of {} silently astray: {astray:#?}", astray.len(), cases.len());
+    Ok(())
+}
+
 /// Faults after which an epoch is off by more than ten standard deviations although it is not reported as bad, and the
 /// reasons.
 const UNTOLD: [(&str, &str); 1] =
