@@ -22,8 +22,8 @@ const LARGEST_SQUARE: f64 = 7.0;
 const GROSS_SQUARE: f64 = 8.0;
 /// The largest mean of the squared standardised residuals in the first epochs, which hold fewer values.
 const FIRST_SQUARE: f64 = 20.0;
-/// The largest share of rejected observations of one epoch, or of its phases, and in the first epochs: beyond it, which ones are wrong is a guess, whatever
-/// the epochs before.
+/// The largest share of rejected observations of one epoch, or of its phases, and in the first epochs: beyond it, which
+/// ones are wrong is a guess, whatever the epochs before.
 const EPOCH_SHARE: f64 = 0.30;
 /// The unknowns of a moving receiver in each epoch: its coordinates and its clock.
 const UNKNOWNS: f64 = 4.0;
@@ -47,10 +47,10 @@ pub(crate) struct Consistency {
     is_split: bool,
 }
 
-/// Whether it is a guess which `wrong` of `all` phases of a moving receiver are wrong: as few others may agree with each other by
-/// chance. Four of them determine the place and the clock, and each wrong one takes another that finds it.
+/// Whether it is a guess which `wrong` of `all` phases of a moving receiver are wrong. Another choice of as many has `all` − 2 `wrong` of the
+/// others in common with this one. Up to four agree on some place and some clock, so that both choices may fit.
 pub(crate) fn is_a_guess(wrong: f64, all: f64) -> bool {
-    wrong > 1.0 && all - wrong <= UNKNOWNS + wrong
+    wrong > 1.0 && all - 2.0 * wrong <= UNKNOWNS
 }
 
 /// The observations of one epoch that were judged, and how many of them were rejected.
@@ -200,10 +200,10 @@ mod tests {
             consistency.update(codes.iter(), phases[..all].iter(), motion);
             consistency.contradiction()
         };
-        // Three tenths of a receiver at rest, whose place is known.
+        // Three tenths, of a receiver at rest, whose place is known.
         assert_eq!(contradiction(3, 10, Motion::Static), None);
         assert_eq!(contradiction(4, 10, Motion::Static), Some(Contradiction::Rejections));
-        // Of a moving one, as many as other phases could find.
+        // Of a moving one, as many as leave no more than four to two choices.
         for (rejected, all) in [(1, 6), (1, 5), (2, 9), (3, 11)] {
             assert_eq!(contradiction(rejected, all, MOVES), None, "{rejected} of {all}");
         }

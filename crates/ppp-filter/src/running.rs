@@ -229,9 +229,9 @@ impl<const N: usize> Running<N> {
     /// Draws the conclusion from ambiguities that are reset because their phases contradict the place. Of a receiver at rest, the
     /// place is wrong if they are most of all. Of a moving one, the others may be the wrong ones, if it is a guess: all are reset.
     fn doubt(&mut self, lines: &mut Lines<'_, '_, N>, motion: Motion) {
-        let contradicted = |line: &&Line| line.slipped == Some(Slipped::Contradicted);
-        let anew = lines.iter().map(|(_, line)| line).filter(contradicted).count();
-        if matches!(motion, Motion::Static) || !is_a_guess(anew as f64, lines.len() as f64) {
+        let [kept, anew] = [None, Some(Slipped::Contradicted)]
+            .map(|it| lines.iter().filter(|(_, line)| line.slipped == it).count());
+        if matches!(motion, Motion::Static) || !is_a_guess(anew as f64, (kept + anew) as f64) {
             self.rest.restart(anew, lines.len());
             return;
         }
