@@ -22,7 +22,7 @@ const LARGEST_SQUARE: f64 = 7.0;
 const GROSS_SQUARE: f64 = 8.0;
 /// The largest mean of the squared standardised residuals in the first epochs, which hold fewer values.
 const FIRST_SQUARE: f64 = 20.0;
-/// The largest share of rejected observations of one epoch, or of its phases, and in the first epochs: beyond it, which
+/// The largest share of rejected observations of one epoch, and in the first epochs: beyond it, which
 /// ones are wrong is a guess, whatever the epochs before.
 const EPOCH_SHARE: f64 = 0.30;
 /// The unknowns of a moving receiver in each epoch: its coordinates and its clock.
@@ -54,20 +54,9 @@ pub(crate) fn is_a_guess(wrong: f64, all: f64) -> bool {
 }
 
 /// The observations of one epoch that were judged, and how many of them were rejected.
-#[derive(Clone, Copy)]
 struct Judged {
     judged: f64,
     rejected: f64,
-}
-
-impl Judged {
-    fn and(self, other: Self) -> Self {
-        Self { judged: self.judged + other.judged, rejected: self.rejected + other.rejected }
-    }
-
-    fn is_split(self) -> bool {
-        self.rejected > EPOCH_SHARE * self.judged
-    }
 }
 
 impl Consistency {
@@ -83,12 +72,10 @@ impl Consistency {
             *sum *= KEPT;
         }
         let (codes, phases) = (self.add(codes), self.add(phases));
-        // Codes reject no phase: how many of the phases are wrong shows in the phases alone.
-        self.is_split = codes.and(phases).is_split()
-            || match motion {
-                Motion::Static => phases.is_split(),
-                Motion::Kinematic { .. } => is_a_guess(phases.rejected, phases.judged),
-            };
+        self.is_split = codes.rejected + phases.rejected
+            > EPOCH_SHARE * (codes.judged + phases.judged)
+            || matches!(motion, Motion::Kinematic { .. })
+                && is_a_guess(phases.rejected, phases.judged);
         let longer = |epochs: u8, is: bool| if is { epochs.saturating_add(1) } else { 0 };
         self.rejecting = longer(self.rejecting, self.rejects(LARGEST_SHARE));
         self.loud = longer(self.loud, self.exceeds(LARGEST_SQUARE));
@@ -190,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn rejected_phases_contradict_whatever_the_codes_say() {
+    fn phases_of_a_moving_receiver_contradict_whatever_the_codes_say() {
         const MOVES: Motion = Motion::Kinematic { process_noise: 100.0 };
         let contradiction = |rejected: usize, all: usize, motion| {
             let codes = [decision(Reason::Agrees, 1.0); 12];
@@ -200,10 +187,9 @@ mod tests {
             consistency.update(codes.iter(), phases[..all].iter(), motion);
             consistency.contradiction()
         };
-        // Three tenths, of a receiver at rest, whose place is known.
-        assert_eq!(contradiction(3, 10, Motion::Static), None);
-        assert_eq!(contradiction(4, 10, Motion::Static), Some(Contradiction::Rejections));
-        // Of a moving one, as many as leave no more than four to two choices.
+        // The place of a receiver at rest is known from before.
+        assert_eq!(contradiction(4, 10, Motion::Static), None);
+        // That of a moving one is not: two choices may have no more than four in common.
         for (rejected, all) in [(1, 6), (1, 5), (2, 9), (3, 11)] {
             assert_eq!(contradiction(rejected, all, MOVES), None, "{rejected} of {all}");
         }
