@@ -55,7 +55,7 @@ macro_rules! test_each {
 }
 
 test_each!(
-    adaptive_kalman air_to_ground arithmetic attitude gnss_message gnss_ppp health imu_calibration integer_ambiguity luenberger luenberger_f64
+    adaptive_kalman air_to_ground arithmetic arithmetic_f64 attitude gnss_message gnss_ppp health imu_calibration integer_ambiguity luenberger luenberger_f64
     observer_design particle_filter pedestrian ppp_filter robust_kalman scalar scalar_f64 snapshot telemetry uav_estimator
     uav_longitudinal uwb_ranging uwb_tracker
 );

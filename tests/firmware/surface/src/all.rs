@@ -3,6 +3,7 @@
 pub mod adaptive_kalman;
 pub mod air_to_ground;
 pub mod arithmetic;
+pub mod arithmetic_f64;
 pub mod attitude;
 pub mod gnss_message;
 pub mod gnss_ppp;
